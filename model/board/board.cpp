@@ -49,6 +49,7 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
       params_(params),
       wanted_(params.run.frames()) {
   dm365.osc(osc_);
+  if (params.clocks.crossbar() != 0) dm365.clocks.set_crossbar(Frequency(params.clocks.crossbar()));
   dm365.display.bind(sink.lines);
   decoder.clock(decoder_clk_);
   if (const video::Standard* raster = params.video.format().digital) {

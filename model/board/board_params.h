@@ -61,6 +61,10 @@ struct ClockParams : ParamGroup {
   IntParam ddr{*this, "ddr", U::kHertz, 0, 0, hertz(most([](const ClockPreset& p) { return p.ddr(); })),
                "SDRAM clock likewise; crossbar and video follow it, with half of it and all of it",
                Origin::kChoice, ""};
+  IntParam crossbar{*this, "crossbar", U::kHertz, 0, 0, 1'000'000'000,
+                    "clock of crossbar, EDMA and registers (SYSCLK4) apart from the SDRAM's, which no chip can have, "
+                    "to find out which of the two binds; 0: half of the SDRAM's, from the same PLL",
+                    Origin::kChoice, ""};
   ClockParams() : ParamGroup("clocks") {
     preset.matters_only("clocks.arm = 0Hz or clocks.ddr = 0Hz", {&arm, &ddr},
                         [this] { return arm() == 0 || ddr() == 0; });

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "model/common/nearest.h"
+
 namespace fovea {
 namespace {
 
@@ -86,21 +88,6 @@ std::string list_text(const std::vector<double>& v) {
 [[noreturn]] void refuse_quantity(std::string_view text, const std::string& allowed,
                                   std::string_view unit, bool wants_unit) {
   refuse(text, allowed + (unit.empty() && wants_unit ? "; a number alone lacks its unit" : ""));
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t up = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
-      diagonal = up;
-    }
-  }
-  return row.back();
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ void DdrModule::keep_latency_while_locked() {
 void DdrModule::reconfigure() {
   const Picoseconds now = kernel_time();
   memory_.settle(now);
-  controller().configure(programmed(), now);
+  controller().configure(idealised(programmed(), params_), now);
   memory_.controller_changed();
   if (!regs.sdbcr.sdramen)
     ready_ = false;

@@ -29,11 +29,17 @@ Frequency ClockTree::venc() const {
   }
 }
 
+Frequency ClockTree::crossbar() const {
+  const Frequency pll = pll1_sysclk4.read(), crystal = osc.read();
+  const bool multiplied = pll.num * crystal.den > crystal.num * pll.den;
+  return multiplied && !crossbar_.stopped() ? crossbar_ : pll;
+}
+
 void ClockTree::update() {
   const std::uint32_t peri = peri_clk_ctrl.read();
   arm_clk.write(peri >> 29 & 1 ? pll2_sysclk2.read() : pll1_sysclk2.read());
   ddr_clk.write((peri >> 27 & 1 ? pll2_sysclk3.read() : pll1_sysclk7.read()) / 2);
-  edma_clk.write(pll1_sysclk4.read());
+  edma_clk.write(crossbar());
   vpss_clk.write(pll1_sysclk5.read());
   venc_clk.write(venc());
   aux_clk.write(osc.read());

@@ -36,9 +36,14 @@ class ClockTree : public sc_core::sc_module {
 
   explicit ClockTree(sc_core::sc_module_name name);
 
+  /// Crossbar, EDMA and registers at this clock once PLL1 multiplies, which no chip can have; stopped: SYSCLK4.
+  void set_crossbar(Frequency f) { crossbar_ = f; }
+
  private:
   void update();
   Frequency venc() const;
+  Frequency crossbar() const;
+  Frequency crossbar_;
 };
 
 }  // namespace fovea::periph

@@ -124,7 +124,8 @@ ExecResult BoardExecutor::run(const ExecRequest& request) {
   const ExecMap map =
       request.program.map(memory_bytes(), parse_ram_base(exec_.ram_base(), memory_bytes()),
                           request.caches);
-  const ExecClocks clocks = ExecClocks::of({clocks_.preset(), clocks_.arm(), clocks_.ddr()});
+  ExecClocks clocks = ExecClocks::of({clocks_.preset(), clocks_.arm(), clocks_.ddr()});
+  if (clocks_.crossbar() != 0) clocks.scr = Frequency(clocks_.crossbar());
   ExecResult result = request.fast_memory ? run_flat(request, cpu_, map, clocks.core)
                                           : run_board(request, map, clocks);
   result.core_clock = clocks.core;

@@ -58,7 +58,7 @@ mem::DdrConfig ReplayParams::config() const {
   c.old_count = value(r.old_count);
   c.page_log2 = static_cast<unsigned>(std::bit_width(r.page())) - 1;
   c.bank_on_top = r.bank_on_top();
-  return c;
+  return mem::idealised(c, ddr);
 }
 
 void ReplayParams::check() const {

@@ -424,6 +424,7 @@ void ReplayPath::issue() {
   if (!aside) {
     ++requests_;
     ++m.transactions;
+    m.at_recorded_time += r.release == trace::Release::kAt && s.number > 1;
     bytes_ += r.bytes;
     (r.write ? m.write_bytes : m.read_bytes) += r.bytes;
   }

@@ -84,6 +84,7 @@ class ReplayPath final : private memsys::MemoryHost {
     unsigned stream = 0;
     std::uint8_t priority = 0xFF;
     std::uint64_t read_bytes = 0, write_bytes = 0, transactions = 0;
+    std::uint64_t at_recorded_time = 0;          // but for the stream's first record
     std::shared_ptr<bus::LatencyStats> latency;  // with others of this label
   };
   /// Of a transfer: when it was submitted, when it ended.

@@ -23,19 +23,23 @@ std::vector<StatRow> ReplayPath::stats() {
                    "replay.time");
   }
   for (const std::string& label : labels()) {
-    std::uint64_t read = 0, write = 0, transactions = 0;
+    std::uint64_t read = 0, write = 0, transactions = 0, recorded = 0;
     const MasterState* one = nullptr;
     for (const MasterState& m : masters_) {
       if (m.label != label) continue;
       read += m.read_bytes;
       write += m.write_bytes;
       transactions += m.transactions;
+      recorded += m.at_recorded_time;
       one = &m;
     }
     const std::string bus = "bus." + label + ".";
     rows.push_back({bus + "read_bytes", read, "B", "bytes that " + label + " read"});
     rows.push_back({bus + "write_bytes", write, "B", "bytes that " + label + " wrote"});
     rows.push_back({bus + "transactions", transactions, "1", "requests of " + label});
+    rows.push_back({bus + "at_recorded_time", recorded, "1",
+                    "of these, those that the trace lets go at the time at which they were recorded, whatever the "
+                    "memory does; of a video port the pixels' clock says when"});
     collect(*one->latency, rows);
     if (memory_only_) continue;  // only the crossbar knows of all waits
     add_wait_rows(label, &MasterWaits::read, "read", rows);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "model/mem/core/command_queue.h"
+#include "model/mem/core/ddr_config.h"
 #include "model/mem/core/power_manager.h"
 #include "model/mem/core/read_return.h"
 #include "model/mem/core/refresh_manager.h"
@@ -32,6 +33,32 @@ struct Refresh {
     for (; times; --times) manager.refreshed();
   }
 };
+
+// Each word of ddr.ideal makes its own fields better and leaves the others alone; none is ever made worse.
+TEST(IdealTest, EachWordChangesItsOwnFields) {
+  mem::DdrConfig programmed;
+  programmed.read_latency = 6;
+  const auto fields = [](const mem::DdrConfig& c) {
+    const mem::DdrTiming& t = c.timing;
+    return std::vector<unsigned>{t.CL,   c.read_latency, t.nRP,   t.nRCD, t.nRAS,  t.nRC,  t.nRRD,
+                                 t.nRTP, t.nWR,          t.nWTR,  t.nRFC, t.nXSNR, t.nXSRD, t.nCKE,
+                                 c.refresh_interval,     c.row_intervals, c.old_count};
+  };
+  const auto with = [&](const char* word) {
+    mem::DdrParams params;
+    params.ideal.set(word);
+    return fields(mem::idealised(programmed, params));
+  };
+  //                                        CL RL RP RCD RAS RC RRD RTP WR WTR RFC XSNR XSRD CKE REFI rows count
+  using Fields = std::vector<unsigned>;
+  EXPECT_EQ(with("none"), (Fields{5, 6, 5, 5, 11, 16, 3, 2, 4, 3, 31, 34, 200, 3, 1895, 16, 255}));
+  EXPECT_EQ(with("row_timing"), (Fields{5, 6, 1, 1, 1, 1, 1, 1, 1, 3, 31, 34, 200, 3, 1895, 16, 255}));
+  EXPECT_EQ(with("cas_latency"), (Fields{4, 4, 5, 5, 11, 16, 3, 2, 4, 3, 31, 34, 200, 3, 1895, 16, 255}));
+  EXPECT_EQ(with("turnaround"), (Fields{5, 6, 5, 5, 11, 16, 3, 2, 4, 1, 31, 34, 200, 3, 1895, 16, 255}));
+  EXPECT_EQ(with("refresh"), (Fields{5, 6, 5, 5, 11, 16, 3, 2, 4, 3, 31, 34, 200, 3, 0, 16, 255}));
+  programmed.timing.CL = programmed.read_latency = 3;
+  EXPECT_EQ(with("cas_latency").front(), 3u) << "what is better already stays";
+}
 
 TEST(RefreshManagerTest, NeedsARefreshAboveItsLevel) {
   Refresh r;

@@ -173,6 +173,7 @@ idle fault.start 1s
 idle fault.end 2s
 idle camera.video_fov 90deg
 acts clocks.arm 270MHz EARLY
+acts clocks.crossbar 150MHz EARLY
 acts clocks.ddr 216MHz EARLY
 acts clocks.preset 297/270 EARLY
 acts clocks.preset 270/216 clocks.ddr=162MHz EARLY
@@ -202,6 +203,7 @@ tested ddr.check dram.check
 tested ddr.clock_restart dram.rows
 acts ddr.command_fifo 1 EARLY
 acts ddr.grade 37e clocks.preset=432/340 EARLY
+acts ddr.ideal row_timing EARLY
 acts ddr.part mt47h32m16 EARLY
 acts ddr.read_fifo 64B BUSY EARLY
 acts ddr.refresh.gap 1 BUSY EARLY

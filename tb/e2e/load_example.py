@@ -17,14 +17,13 @@ WIDTH = 118  # of a line on the page
 
 
 def cell(row):
-    """What a port bears at a priority: MB/s asked for and moved, and what the longest remap leaves of a frame period."""
+    """What a port bears at a priority: MB/s moved and asked for, and what the longest remap leaves of a period."""
     if row["answer"] == "unknown":
         sys.exit(f"no answer for {row['searched']}, priority {row['priority']}: {row['why_bad']}")
     if row["answer"] == "none" or row["good"] == "0 MB/s":
         return "none"
     asked = row["good"].removesuffix(" MB/s") if row["good"].endswith(" MB/s") else "no pauses"
-    left = 1 - float(row["frame.remap_time.max"]) * float(row["frame.rate"])
-    return f"{asked}: {float(row['moved_MBps']):.0f}, {100 * left:.0f} %"
+    return f"{float(row['moved_MBps']):.0f} ({asked}), {100 * float(row['left_of_frame_period']):.0f} %"
 
 
 def table(file):

@@ -262,6 +262,27 @@ TEST_F(PllTest, RatiosActGoTimeAfterGosetAndNotBefore) {
   EXPECT_EQ(s.b1.read(kDchange), 0u);
 }
 
+// The crossbar's clock apart from the SDRAM's, as no chip can have it: from PLL1's first multiplied output on, and only
+// the one that crossbar, EDMA and registers share.
+TEST_F(PllTest, TheCrossbarsClockMayBeSetApart) {
+  const Frequency before[] = {s.ddr.read(), s.vpss.read(), s.arm.read(), s.uart1.read(), s.aux.read()};
+  s.tree.set_crossbar(khz(170'000));
+  s.bs.write(0x48, 0x243F04FC & ~(1u << 29));  // any change of a multiplexer
+  run_until(now() + kPsPerMs);
+  s.bs.write(0x48, 0x243F04FC);
+  run_until(now() + kPsPerMs);
+  EXPECT_EQ(s.edma.read(), khz(170'000));
+  const Frequency after[] = {s.ddr.read(), s.vpss.read(), s.arm.read(), s.uart1.read(), s.aux.read()};
+  EXPECT_TRUE(std::equal(std::begin(before), std::end(before), std::begin(after)));
+  s.b1.write(kPllctl, s.b1.read(kPllctl) & ~1u);  // bypass
+  run_until(now() + kPsPerMs);
+  EXPECT_EQ(s.edma.read(), khz(6'000)) << "the crystal's clock is not multiplied";
+  s.b1.write(kPllctl, s.b1.read(kPllctl) | 1);
+  s.tree.set_crossbar({});
+  run_until(now() + kPsPerMs);
+  EXPECT_EQ(s.edma.read(), khz(121'500));
+}
+
 TEST_F(PllTest, DisabledDividerStopsItsClock) {
   s.b1.write(plldiv(5), 0x0001);
   s.b1.write(kPllcmd, 1);

@@ -49,11 +49,13 @@ TEST(ReportCommandTest, RefusesToReplaceAnythingElse) {
 }
 
 constexpr const char* kBinds =
-    "firmware.kernel,at,resource,binds,gain,metric,plain,reference,relaxed,unit,by,settings,remark\n"
-    "plain,,bridge_arm_d,yes,0.125,frame.remap_time.mean,0.01,0.01,0.00875,s,run,bus.arm_d.request_latency=0 cycles,\n"
-    "plain,,refresh,no,0.02,frame.remap_time.mean,0.01,0.0101,0.0099,s,replay,ddr.tREFI=0 cycles,\n"
-    "plain,,edma_depth,,,frame.remap_time.mean,0.01,,,s,run,edma.tc.outstanding=16,no traffic\n"
-    "staged,,dcache,yes,0.5,frame.remap_time.mean,0.002,0.002,0.001,s,run,x=1,\n";
+    "firmware.kernel,at,resource,binds,gain,metric,plain,reference,relaxed,unit,by,settings,remark,"
+    "origin,gain_low,gain_high\n"
+    "plain,,bridge_arm_d,yes,0.125,frame.remap_time.mean,0.01,0.01,0.00875,s,run,bus.arm_d.request_latency=0 cycles,,"
+    "assumed,0.0812,0.31\n"
+    "plain,,refresh,no,0.02,frame.remap_time.mean,0.01,0.0101,0.0099,s,replay,--without vpbe,,choice,,\n"
+    "plain,,edma_depth,,,frame.remap_time.mean,0.01,,,s,run,edma.tc.outstanding=16,no traffic,family,,\n"
+    "staged,,dcache,yes,0.5,frame.remap_time.mean,0.002,0.002,0.001,s,run,x=1,,choice,,\n";
 
 TEST(ReportCommandTest, SaysWhatBindsFromTheAnswersAboutTheSameRun) {
   const TempDir dir;
@@ -63,13 +65,15 @@ TEST(ReportCommandTest, SaysWhatBindsFromTheAnswersAboutTheSameRun) {
   EXPECT_EQ(text.status, kExitDone) << text.err;
   EXPECT_THAT(text.out,
               HasSubstr("What binds frame.remap_time.mean, as runs show in which it alone is relaxed: "
-                        "bridge_arm_d (12 % better); 1 of the 2 resources that were relaxed change it by less.\n"
+                        "bridge_arm_d (12 % better; assumed: 8.1 % to 31 %); 1 of the "
+                        "2 resources that were relaxed change it by less.\n"
                         "    from binds.csv"));
   EXPECT_EQ(fovea({"report", folder, "--limits", limits}).status, kExitDone);
   const std::string page = test::read_text(folder + "/report.html");
   EXPECT_THAT(page, HasSubstr("<section id=\"binds\""));
   EXPECT_THAT(page, HasSubstr("<data value=\"0.00875\">8.75 ms</data>"));
   EXPECT_THAT(page, HasSubstr("no traffic"));
+  EXPECT_THAT(page, HasSubstr("assumed: 8.1 % to 31 %"));
   EXPECT_THAT(page, ::testing::Not(HasSubstr("x=1"))) << "of another run";
   EXPECT_EQ(fovea({"report", folder}).status, kExitDone);
   EXPECT_THAT(test::read_text(folder + "/report.html"), ::testing::Not(HasSubstr("id=\"binds\"")));
@@ -81,8 +85,8 @@ TEST(ReportCommandTest, AnswersAboutOtherRunsAndDamagedOnesAreRefused) {
   const std::string all = kBinds, head = all.substr(0, all.find('\n') + 1);
   const std::pair<std::string, const char*> cases[] = {
       {head + all.substr(all.find("staged")), "it is about runs with frame.remap_time.mean = 0.002"},
-      {head + "plain,,x\n", "binds.csv:2: 3 fields; the header has 13"},
-      {head + "plain,,x,yes,much,frame.remap_time.mean,0.01,0.01,0.01,s,run,,\n",
+      {head + "plain,,x\n", "binds.csv:2: 3 fields; the header has 16"},
+      {head + "plain,,x,yes,much,frame.remap_time.mean,0.01,0.01,0.01,s,run,,,,,\n",
        "binds.csv:2: 'much' is not a number"},
       {"resource,binds\n", "there is no column 'gain'"},
       {"", "the header is missing"}};

@@ -1,5 +1,6 @@
 // A program with the command line of `fovea` over a toy board, whose figures are simple functions of its
 // parameters. FAKE_LIMITS_LOG names a file that gets a line for each run.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -19,6 +20,13 @@ struct Toy : ParamGroup {
   IntParam limit{*this, "limit", U::kCount, 500, 0, 2000, "the largest value without a drop", Origin::kChoice, ""};
   IntParam floor{*this, "floor", U::kCount, 0, 0, 2000, "the smallest value without a drop", Origin::kChoice, ""};
   IntParam hole{*this, "hole", U::kCount, 2000, 0, 2000, "from here on all is good again", Origin::kChoice, ""};
+  IntParam slipping{
+      *this,           "slipping", U::kCount, 2000, 0, 2000, "from here on the loop slips once, in the window",
+      Origin::kChoice, ""};
+  IntParam slipped{
+      *this, "slipped", U::kCount, 2000, 0, 2000, "from here on it has slipped before the window", Origin::kChoice, ""};
+  IntParam losing{*this,           "losing", U::kCount, 2000, 0, 2000, "from here on every third frame is shown again",
+                  Origin::kChoice, ""};
   IntParam clock{*this, "clock", U::kHertz, 100'000'000, 1'000'000, 1'000'000'000, "a clock", Origin::kChoice, ""};
   RealParam angle{*this, "angle", "deg", 0, 0, 90, "an angle", Origin::kChoice, ""};
   IntParam contention{*this, "contention", U::kCount, 0, 0, 100, "ms that others cost", Origin::kChoice, ""};
@@ -29,13 +37,19 @@ struct Toy : ParamGroup {
 };
 
 struct Latency : ParamGroup {
-  IntParam request{*this, "request_latency", U::kCycles, 3, 0, 32, "there", Origin::kChoice, ""};
-  IntParam response{*this, "response_latency", U::kCycles, 3, 0, 32, "back", Origin::kChoice, ""};
+  IntParam request{*this, "request_latency", U::kCycles,       3,      0,
+                   32,    "there",           Origin::kAssumed, "none", {"2 cycles", "6 cycles", "a toy's belief"}};
+  IntParam response{*this,      "response_latency",
+                    U::kCycles, 3,
+                    0,          32,
+                    "back",     Origin::kAssumed,
+                    "none",     {"2 cycles", "6 cycles", "a toy's belief"}};
   Latency() : ParamGroup("bus.arm_d") {}
 };
 
 struct Memory : ParamGroup {
-  IntParam request{*this, "request_latency", U::kCycles, 8, 0, 32, "there", Origin::kChoice, ""};
+  IntParam request{*this, "request_latency", U::kCycles,      8,         0,
+                   32,    "there",           Origin::kFamily, "sisters", {"8 cycles", "32 cycles", "a toy's belief"}};
   IntParam response{*this, "return_latency", U::kCycles, 2, 0, 32, "back", Origin::kChoice, ""};
   Memory() : ParamGroup("ddr") {}
 };
@@ -47,6 +61,8 @@ struct Priority : ParamGroup {
 };
 
 struct Run : ParamGroup {
+  IntParam frames{*this, "frames", U::kCount, 3, 1, 1000, "frames of the window", Origin::kChoice, ""};
+  TextParam until{*this, "until", "frames", "when it ends"};
   IntParam start_limit{*this, "start_limit", U::kTime, 30 * kPsPerSecond, kPsPerMs, 3600 * kPsPerSecond, "limit",
                        Origin::kChoice, ""};
   Run() : ParamGroup("run") {}
@@ -98,19 +114,29 @@ class ToyBoard : public app::Simulation {
     result.complete = !request.stop;
     if (toy_.mode.is("bare")) return result;
     const auto count = [&](const char* name, std::uint64_t n) { result.stats.push_back({name, n, "1", "a count"}); };
-    count("frame.displayed", 3);
+    const bool ends_at_once = run_.until() != "frames";
+    const std::uint64_t repeated = toy_.value() >= toy_.losing()     ? run_.frames() / 3
+                                   : toy_.value() >= toy_.slipped()  ? 0
+                                   : toy_.value() >= toy_.slipping() ? 1
+                                                                     : 0;
+    const double shown = static_cast<double>(run_.frames());
+    count("frame.displayed", run_.frames());
     count("frame.dropped", drops);
-    count("frame.repeated", 0);
+    count("frame.repeated", repeated);
     count("capture.overflows", 0);
     count("display.underflows", 0);
     count("camera.1.frame.dropped", toy_.value() == 13 ? 1 : 0);
     count("bus.arm_d.transactions", 9);
+    count("bus.vpbe.transactions", 9);
     count("bus.load.read_bytes", static_cast<std::uint64_t>(load_.rate() * 1e6));
     count("bus.load.write_bytes", 0);
-    result.stats.push_back({"frame.rate", 25.0, "1/s", "rate"});
+    result.stats.push_back({"frame.nothing", std::nan(""), "s", "a mean of nothing"});
+    if (ends_at_once) return result;
+    const bool late = toy_.value() >= std::min({toy_.slipping(), toy_.slipped(), toy_.losing()});
+    result.stats.push_back({"frame.rate", 25.0 * (shown - static_cast<double>(repeated)) / shown, "1/s", "rate"});
+    result.stats.push_back({"frame.latency.max", late ? 0.1189 : 0.0789, "s", "latency"});
     result.stats.push_back({"frame.window", 1.0, "s", "window"});
     result.stats.push_back({"startup.first_frame", 0.25, "s", "first frame"});
-    result.stats.push_back({"frame.nothing", std::nan(""), "s", "a mean of nothing"});
     result.stats.push_back({"frame.remap_time.mean", ms * 1e-3, "s", "time"});
     result.stats.push_back({"frame.remap_time.max", ms * 1e-3, "s", "time"});
     app::FrameRow row;

@@ -1,5 +1,6 @@
 // What the registers of the SDRAM controller say, decoded.
 #pragma once
+#include "model/mem/core/ddr_params.h"
 #include "model/mem/core/ddr_timing.h"
 
 namespace fovea::mem {
@@ -24,5 +25,8 @@ struct DdrConfig {
   /// SDBCR2.PASR of a mobile part: self-refresh keeps the first 1/2^n of the array.
   unsigned refreshed_log2 = 0;
 };
+
+/// What the registers say with one thing of `ddr.ideal` better than any part has it.
+DdrConfig idealised(DdrConfig config, const DdrParams& params);
 
 }  // namespace fovea::mem

@@ -1,4 +1,5 @@
 // What the controller takes from its parameters, registers and clocks.
+#include <algorithm>
 #include <bit>
 #include <tuple>
 
@@ -6,6 +7,20 @@
 #include "model/mem/core/ddr_controller.h"
 
 namespace fovea::mem {
+
+DdrConfig idealised(DdrConfig c, const DdrParams& params) {
+  // The smallest CL that a part of this kind has above 200 MHz (JESD79-2); it decides on WL too.
+  constexpr unsigned kLeastLatency = 4;
+  DdrTiming& t = c.timing;
+  if (params.ideal.is("row_timing")) t.nRP = t.nRCD = t.nRAS = t.nRC = t.nRRD = t.nRTP = t.nWR = 1;
+  if (params.ideal.is("cas_latency")) {
+    t.CL = std::min(t.CL, kLeastLatency);
+    c.read_latency = std::min(c.read_latency, kLeastLatency);
+  }
+  if (params.ideal.is("turnaround")) t.nWTR = 1;
+  if (params.ideal.is("refresh")) c.refresh_interval = 0;
+  return c;
+}
 
 DdrController::DdrController(const DdrParams& params, BackingStore& store)
     : store_(store),

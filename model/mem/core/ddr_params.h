@@ -84,6 +84,10 @@ struct DdrParams : ParamGroup {
                         "\"the ACTV command opens a row\" (SPRUH82C 14.2.3.3), a sister chip; the choice "
                         "among open rows is not public",
                         {"activated", "ready", "a controller may know which rows can be read already"}};
+  EnumParam ideal{*this, "ideal", "none", {"none", "row_timing", "cas_latency", "turnaround", "refresh"},
+                  "one thing better than any part has it, whatever is programmed, to find out what binds: rows open "
+                  "and close in 1 clock; CL and RL of 4 clocks at most; write to read in 1 clock; no refresh",
+                  Origin::kChoice, ""};
   DdrParams() : ParamGroup("ddr") {
     ti_open_row.matters_only("ddr.scheduler = ti or closed_page", {&scheduler},
                              [this] { return scheduler.is("ti") || scheduler.is("closed_page"); });

@@ -14,13 +14,6 @@ using Answer = Bisection::Answer;
 
 std::string joined(const Settings& settings) { return fmt::format("{}", fmt::join(settings, ", ")); }
 
-/// What a run had left: the share of a frame period that its longest remap does not take.
-std::optional<double> slack(const points::PointResult& r) {
-  const auto rate = r.stat("frame.rate"), longest = r.stat("frame.remap_time.max");
-  if (!rate || !longest || *rate <= 0) return std::nullopt;
-  return 1 - *longest * *rate;
-}
-
 std::string slack_text(const points::PointResult& r) {
   const auto left = slack(r);
   if (!left) return "";
@@ -28,9 +21,36 @@ std::string slack_text(const points::PointResult& r) {
   return fmt::format("; the longest remap leaves {:.1f} % of a frame period", 100 * *left);
 }
 
-std::string odd_text(const Bisection::Outcome& o, const std::function<std::string(std::uint64_t)>& name) {
-  if (o.monotonic) return "";
-  return fmt::format("  Not monotonic: {} meets the conditions although a value before it does not.\n", name(o.odd));
+/// A loop that has slipped shows every frame, but later. Empty: this one shows its frames no later than the other one.
+std::string later_text(const points::PointResult& r, const points::PointResult& than, const std::string& name) {
+  const auto late = r.stat("frame.latency.max"), before = than.stat("frame.latency.max"), rate = steady_rate(r);
+  if (!late || !before || !rate || (*late - *before) * *rate < 0.5) return "";
+  return fmt::format("; frames are shown {} after their capture, {} later than with {}, as the loop has slipped",
+                     app::human_text(*late, "s"), app::human_text(*late - *before, "s"), name);
+}
+
+/// Of an answer that is an edge.
+std::string edge_text(const Study& study, const Bisection::Outcome& o) {
+  const ValueSearch& s = *study.find();
+  const auto name = [&](std::uint64_t n) { return study.range()->text(n); };
+  const bool largest = o.answer == Answer::kLargest;
+  const std::uint64_t end = largest ? 0 : study.range()->last();
+  std::string out = fmt::format("{}: ", study.range()->key());
+  if (o.monotonic)
+    out += fmt::format("{} is the {} of the {} values tried that meets the conditions", name(o.good),
+                       largest ? "largest" : "smallest", s.tried().size());
+  else
+    out += fmt::format("from {} {} to {} every value that was tried meets the conditions, {} were tried", name(end),
+                       largest ? "up" : "down", name(o.good), s.tried().size());
+  out +=
+      fmt::format("{}{}. With {}: {}.\n", slack_text(s.at(o.good).result),
+                  later_text(s.at(o.good).result, s.at(end).result, name(end)), name(o.bad), s.at(o.bad).verdict.why);
+  if (!o.monotonic)
+    out += fmt::format(
+        "  Not monotonic: beyond that, {} meets the conditions too, although a value before it does not. "
+        "--probes 1000 tries up to 1000 more values.\n",
+        name(o.odd));
+  return out;
 }
 
 std::string find_text(const Study& study) {
@@ -40,45 +60,56 @@ std::string find_text(const Study& study) {
   if (s.failure()) return fmt::format("{}: no answer, {}.\n", key, s.failure()->why);
   const auto o = s.outcome();
   const std::uint64_t last = study.range()->last();
+  const auto ends = [&] {
+    return fmt::format("{} ({}) nor {} ({})", name(0), s.at(0).verdict.why, name(last), s.at(last).verdict.why);
+  };
   switch (o.answer) {
-    case Answer::kAll:
-      return fmt::format("{}: all values that were tried from {} to {} meet the conditions{}.\n", key, name(0),
-                         name(last), slack_text(s.at(last).result));
+    case Answer::kAll: {
+      const std::uint64_t tightest = *s.answer();
+      const std::uint64_t other = tightest == last ? 0 : last;
+      return fmt::format(
+          "{}: all {} values that were tried from {} to {} meet the conditions. The tightest is {}{}{}.\n", key,
+          s.tried().size(), name(0), name(last), name(tightest), slack_text(s.at(tightest).result),
+          later_text(s.at(tightest).result, s.at(other).result, name(other)));
+    }
     case Answer::kNone:
-      return fmt::format("{}: neither {} ({}) nor {} ({}) meets the conditions.\n", key, name(0), s.at(0).verdict.why,
-                         name(last), s.at(last).verdict.why) +
-             odd_text(o, name);
+      return fmt::format("{}: neither {} meets the conditions, nor does one of the {} values tried.\n", key, ends(),
+                         s.tried().size());
+    case Answer::kBetween:
+      return fmt::format(
+          "{}: neither {} meets the conditions, but {} between them does{}. --probes 1000 tries up to "
+          "1000 more values.\n",
+          key, ends(), name(o.good), slack_text(s.at(o.good).result));
     default:
-      return fmt::format("{}: {} is the {} value that meets the conditions{}. With {}: {}.\n", key, name(o.good),
-                         o.answer == Answer::kLargest ? "largest" : "smallest", slack_text(s.at(o.good).result),
-                         name(o.bad), s.at(o.bad).verdict.why) +
-             odd_text(o, name);
+      return edge_text(study, o);
   }
+}
+
+/// What was moved and, behind it, what was asked for: the memory may not give it.
+std::string load_rate(const LoadSearch& load, std::uint64_t n) {
+  return fmt::format("{:.1f} MB/s moved ({})", load.moved(n),
+                     n == load.last() ? load.rate_text(n) : "asked for " + load.rate_text(n));
 }
 
 std::string load_text(const LoadSearch& load) {
   const ValueSearch& s = load.search();
   std::string out = fmt::format("  port {}, priority {}: ", load.place().port, load.place().priority);
   if (s.failure()) return out + fmt::format("no answer, {}\n", s.failure()->why);
-  const auto name = [&](std::uint64_t n) { return load.rate_text(n); };
   const auto o = s.outcome();
-  if (o.answer == Answer::kAll) {
-    const std::uint64_t last = load.last();
-    return out + fmt::format("{}, {:.1f} MB/s{}\n", name(last), load.moved(last), slack_text(s.at(last).result));
-  }
-  if (o.answer != Answer::kLargest) return out + "none\n";
-  if (o.good == 0) return out + fmt::format("none; with {}: {}\n", name(o.bad), s.at(o.bad).verdict.why);
-  return out +
-         fmt::format("{} ({:.1f} MB/s moved){}. With {}: {}\n", name(o.good), load.moved(o.good),
-                     slack_text(s.at(o.good).result), name(o.bad), s.at(o.bad).verdict.why) +
-         odd_text(o, name);
+  const auto most = load.answer();
+  if (!most) return out + "none\n";
+  out += *most == 0 ? "none" : load_rate(load, *most) + slack_text(s.at(*most).result);
+  if (o.answer == Answer::kLargest) out += fmt::format(". With {}: {}", load.rate_text(o.bad), s.at(o.bad).verdict.why);
+  out += "\n";
+  if (!o.monotonic && o.answer == Answer::kLargest)
+    out += fmt::format("  Not monotonic: with {} the conditions are met too.\n", load.rate_text(o.odd));
+  return out;
 }
 
 /// Bytes that a place bears, MB/s.
 double borne(const LoadSearch& load) {
-  const auto o = load.search().outcome();
-  if (o.answer == Answer::kAll) return load.moved(load.last());
-  return o.answer == Answer::kLargest && o.good > 0 ? load.moved(o.good) : 0;
+  const auto most = load.answer();
+  return most && *most > 0 ? load.moved(*most) : 0;
 }
 
 std::string demand_text(const Study& study) {
@@ -120,35 +151,70 @@ std::string settings_text(const Relaxation& r) {
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
+/// What is believed of a resource, and what relaxing it gains at both ends of that. Empty: its figures are known.
+std::string belief_text(const Study& study, const Binds::Row& row) {
+  const Relaxation& r = row.relaxation;
+  if (!r.believed()) return "";
+  const auto end = [&](const std::vector<std::string>& settings, const Binds::Row::End& e) {
+    if (!e.plain || !e.gain) return fmt::format("{}: no figure", fmt::join(settings, ", "));
+    return fmt::format("with {} it would be {} and {:.1f} % of that would go", fmt::join(settings, ", "),
+                       app::human_text(*e.plain, study.binds()->unit()), 100 * *e.gain);
+  };
+  return fmt::format("    This is {}: {}; {}.\n",
+                     r.origin == Origin::kAssumed ? "assumed, no public figure" : "known of sister chips only",
+                     end(r.low, row.low()), end(r.high, row.high()));
+}
+
+/// "bridge_vpfe (+0.1 %; assumed, +0.0 to +0.3 %)".
+std::string gain_text(const Binds::Row& row) {
+  const Relaxation& r = row.relaxation;
+  std::string out = fmt::format("{} ({:+.1f} %", r.name, 100 * *row.gain);
+  if (r.believed()) {
+    out += fmt::format("; {}", to_string(r.origin));
+    const auto low = row.low().gain, high = row.high().gain;
+    out += low && high ? fmt::format(", {:+.1f} to {:+.1f} %", 100 * *low, 100 * *high) : ", ends not known";
+  }
+  return out + ")";
+}
+
+std::string sentence_of(const Study& study, const Binds::Row& row) {
+  const Relaxation& r = row.relaxation;
+  std::string resource = r.resource;
+  resource[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(resource[0])));
+  return fmt::format("  {} binds: {} ({}) it is {}, {:.1f} % better{}.\n", resource, r.how, settings_text(r),
+                     app::human_text(*row.after, study.binds()->unit()), 100 * *row.gain,
+                     r.replay ? ", by replay" : "") +
+         belief_text(study, row);
+}
+
 std::string binds_text(const Study& study) {
   const Binds& b = *study.binds();
   const std::string at = study.binds_at().empty() ? "" : " at " + study.binds_at();
   if (b.failure()) return fmt::format("What binds {}{}: no answer, {}.\n", b.metric(), at, b.failure()->why);
-  const auto value = [&](double v) { return app::human_text(v, b.unit()); };
   std::string out = fmt::format("What binds {}{} ({}), each resource relaxed alone and run again:\n", b.metric(), at,
-                                value(*b.plain()));
-  Settings little, worse, idle, failed;
+                                app::human_text(*b.plain(), b.unit()));
+  Settings perhaps, little, worse, idle, failed;
   bool any = false;
   for (const Binds::Row& row : b.rows()) {
     const Relaxation& r = row.relaxation;
     if (row.binds()) {
       any = true;
-      std::string sentence = r.resource;
-      sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
-      out += fmt::format("  {} binds: {} ({}) it is {}, {:.1f} % better{}.\n", sentence, r.how, settings_text(r),
-                         value(*row.after), 100 * *row.gain, r.replay ? ", by replay" : "");
+      out += sentence_of(study, row);
     } else if (row.gain) {
-      (*row.gain < -kBinds ? worse : little).push_back(fmt::format("{} ({:+.1f} %)", r.name, 100 * *row.gain));
+      (row.may_bind() ? perhaps : *row.gain < -kBinds ? worse : little).push_back(gain_text(row));
     } else {
       (r.idle.empty() ? failed : idle).push_back(fmt::format("{} ({})", r.name, r.idle.empty() ? row.failure : r.idle));
     }
   }
   if (!any) out += "  Nothing that was relaxed makes it more than 2 % better.\n";
-  if (!little.empty()) out += fmt::format("  Does not bind: {}.\n", fmt::join(little, ", "));
-  if (!worse.empty()) out += fmt::format("  Makes it worse: {}.\n", fmt::join(worse, ", "));
-  if (!idle.empty()) out += fmt::format("  Not tried: {}.\n", fmt::join(idle, "; "));
-  if (!failed.empty()) out += fmt::format("  Without a figure: {}.\n", fmt::join(failed, "; "));
-  if (!b.remark().empty()) out += "  " + b.remark() + "\n";
+  const auto add = [&](const char* what, const Settings& list, const char* between) {
+    if (!list.empty()) out += fmt::format("  {}: {}.\n", what, fmt::join(list, between));
+  };
+  add("Does not bind as it is, but may within what is believed", perhaps, "; ");
+  add("Does not bind", little, ", ");
+  add("Makes it worse", worse, ", ");
+  add("Not tried", idle, "; ");
+  add("Without a figure", failed, "; ");
   return out;
 }
 
@@ -165,7 +231,8 @@ std::string answers_text(const std::vector<std::unique_ptr<Study>>& studies, con
                          const std::vector<Condition>& conditions) {
   Settings all;
   for (const Condition& c : conditions) all.push_back(text_of(c));
-  std::string out = fmt::format("Conditions: {}.\n", joined(all));
+  std::string out =
+      fmt::format("Conditions: {}; the remaps of a frame take no longer than its period on average.\n", joined(all));
   for (const auto& study : studies) {
     if (!study->over().empty()) out += fmt::format("\n{}:\n", joined(study->over()));
     if (study->find()) out += find_text(*study);

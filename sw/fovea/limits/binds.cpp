@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 
+#include "model/common/masters.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/limits/figure_names.h"
 
 namespace fovea::limits {
 
@@ -33,41 +35,53 @@ void Binds::relax(const points::PointResult& plain) {
                        fmt::format("the run ended with status {}: {}", plain.status, plain.message), plain.status};
   } else if (!plain_ || *plain_ == 0) {
     failure_ = Verdict{Verdict::Kind::kUnknown,
-                       fmt::format("--binds '{}': the run has {} of this name; those that it has are in {}",
-                                   app::one_line(metric_), plain_ || plain.units.contains(metric_)
-                                       ? "no figure other than 0" : "no figure",
-                                   app::one_line((plain.folder / "run/stats.json").string())), 2};
+                       fmt::format("--binds '{}': the run has {} of this name{}", app::one_line(metric_),
+                                   plain_ || plain.units.contains(metric_) ? "no figure other than 0" : "no figure",
+                                   names_hint(metric_, plain)),
+                       2};
   }
   if (failure_) return done_();
   unit_ = plain.units.find(metric_)->second;
   for (Relaxation& r : relaxations(session_.effective(settings_)->params, plain)) {
     if (only_.empty() || std::find(only_.begin(), only_.end(), r.name) != only_.end())
-      rows_.push_back({.relaxation = std::move(r), .before = {}, .after = {}, .gain = {}, .failure = {}});
+      rows_.emplace_back().relaxation = std::move(r);
   }
   const auto tried = [](const Row& row) { return row.relaxation.idle.empty(); };
-  left_ = static_cast<std::size_t>(std::count_if(rows_.begin(), rows_.end(), tried));
-  const bool replays = std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) {
-    return row.relaxation.replay && tried(row);
-  });
+  bool replays = false;
+  for (const Row& row : rows_) {
+    if (!tried(row)) continue;
+    left_ += row.relaxation.believed() ? 3 : 1;
+    replays = replays || row.relaxation.replay;
+  }
   if (left_ == 0) return done_();
   for (std::size_t i = 0; i < rows_.size(); ++i)
-    if (tried(rows_[i]) && !rows_[i].relaxation.replay)
-      session_.run(settings_, rows_[i].relaxation.settings,
-                   [this, i](const points::PointResult& result) { take(i, plain_, result); });
+    if (tried(rows_[i]) && !rows_[i].relaxation.replay) run_row(i);
   if (replays)
     session_.replay(plain, {}, [this, plain](const points::PointResult& replayed) { replay_all(plain, replayed); });
 }
 
+void Binds::run_row(std::size_t i) {
+  const Relaxation& r = rows_[i].relaxation;
+  session_.run(settings_, r.settings, [this, i](const points::PointResult& result) { take(i, plain_, result); });
+  if (!r.believed()) return;
+  session_.run(settings_, r.low, [this, i](const points::PointResult& result) {
+    rows_[i].low_plain = result.status == 0 ? result.stat(metric_) : std::nullopt;
+    one_done();
+  });
+  session_.run(settings_, r.high, [this, i](const points::PointResult& result) {
+    rows_[i].high_plain = result.status == 0 ? result.stat(metric_) : std::nullopt;
+    one_done();
+  });
+}
+
 void Binds::replay_all(const points::PointResult& plain, const points::PointResult& replayed) {
   const auto before = replayed.stat(metric_);
-  if (before && std::abs(*before - *plain_) > kBinds * *plain_)
-    remark_ = fmt::format("A replay of the plain run gives {:.5g} instead of {:.5g}; relaxations by replay are "
-                          "compared with that replay.", *before, *plain_);
+  const std::string refused = replay_refused(plain, replayed, metric_);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     Row& row = rows_[i];
     if (!row.relaxation.replay || !row.relaxation.idle.empty()) continue;
-    if (!before || *before == 0) {
-      row.failure = replayed.status ? replayed.message : "only a replay can do this, and it has no such figure";
+    if (!refused.empty()) {
+      row.relaxation.idle = refused;
       one_done();
       continue;
     }
@@ -77,15 +91,37 @@ void Binds::replay_all(const points::PointResult& plain, const points::PointResu
   }
 }
 
+std::string replay_refused(const points::PointResult& plain, const points::PointResult& replayed,
+                           const std::string& metric) {
+  if (replayed.status != 0) return "its replay failed: " + replayed.message;
+  for (const MasterInfo& m : kMasters.rows) {
+    const double kept = replayed.stat(fmt::format("bus.{}.at_recorded_time", m.statistics)).value_or(0);
+    if (m.bridge != Bridge::kVideo && m.bridge != Bridge::kCore && kept > 0)
+      return fmt::format("only a replay can do it, and the trace keeps the recorded times of {:.0f} of {}'s requests",
+                         kept, m.statistics);
+  }
+  const auto run = plain.stat(metric), again = replayed.stat(metric);
+  if (!run || !again || *again == 0) return "only a replay can do it, and it has no such figure";
+  const double apart = std::abs(*again / *run - 1);
+  if (apart <= kReplayError) return "";
+  return fmt::format("only a replay can do it, and that gives {:.5g} for the run's {:.5g}, {:.1f} % off", *again, *run,
+                     100 * apart);
+}
+
 void Binds::take(std::size_t i, std::optional<double> before, const points::PointResult& result) {
   Row& row = rows_[i];
   row.before = before;
+  row.higher = higher_;
   row.after = result.status == 0 ? result.stat(metric_) : std::nullopt;
-  if (row.after)
-    row.gain = (higher_ ? *row.after - *before : *before - *row.after) / std::abs(*before);
-  else
-    row.failure = result.status ? result.message : "the run has no such figure then";
+  row.gain = row.end(before).gain;
+  if (!row.gain) row.failure = result.status ? result.message : "the run has no such figure then";
   one_done();
+}
+
+Binds::Row::End Binds::Row::end(std::optional<double> plain) const {
+  End out{plain, {}};
+  if (plain && after && *plain != 0) out.gain = (higher ? *after - *plain : *plain - *after) / std::abs(*plain);
+  return out;
 }
 
 void Binds::one_done() {

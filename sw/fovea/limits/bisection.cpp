@@ -23,6 +23,18 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> Bisection::edge() const {
   return upwards() ? find(tried_.begin(), tried_.end()) : find(tried_.rbegin(), tried_.rend());
 }
 
+unsigned Bisection::changes() const {
+  unsigned n = 0;
+  for (auto i = tried_.begin(); i != tried_.end() && std::next(i) != tried_.end(); ++i)
+    n += i->second != std::next(i)->second;
+  return n;
+}
+
+unsigned Bisection::budget() const {
+  const unsigned expected = tried_.at(0) == tried_.at(last_) ? 0 : 1;
+  return probes_ && changes() > expected ? probes_ + kMore : probes_;
+}
+
 /// The middle of the largest gap between tried values of which neither is the edge's.
 std::optional<std::uint64_t> Bisection::probe() const {
   std::uint64_t widest = 1, middle = 0;
@@ -43,7 +55,7 @@ std::optional<std::uint64_t> Bisection::next() const {
     const std::uint64_t low = std::min(e->first, e->second), high = std::max(e->first, e->second);
     if (high - low > 1) return low + (high - low) / 2;
   }
-  return probed_ < probes_ ? probe() : std::nullopt;
+  return probed_ < budget() ? probe() : std::nullopt;
 }
 
 void Bisection::tell(std::uint64_t value, bool good) {
@@ -56,10 +68,10 @@ void Bisection::tell(std::uint64_t value, bool good) {
 
 std::size_t Bisection::at_most_left() const {
   if (!next()) return 0;
-  const std::size_t probes = probes_ - probed_;
+  const bool ends = tried_.contains(0) && tried_.contains(last_);
+  const std::size_t probes = ends ? budget() - probed_ : probes_;
   const auto halvings = [](std::uint64_t gap) { return static_cast<std::size_t>(std::bit_width(gap - 1)); };
-  if (!tried_.contains(0) || !tried_.contains(last_))
-    return (last_ ? 2 - tried_.size() : 1) + (last_ > 1 ? halvings(last_) + probes : 0);
+  if (!ends) return (last_ ? 2 - tried_.size() : 1) + (last_ > 1 ? halvings(last_) + probes : 0);
   const auto e = edge();
   return probes + (e ? halvings(std::max(e->first, e->second) - std::min(e->first, e->second)) : 0);
 }
@@ -72,9 +84,10 @@ Bisection::Outcome Bisection::outcome() const {
     out.answer = tried_.begin()->second ? Answer::kAll : Answer::kNone;
     // Bad at both ends, but perhaps not between them.
     for (const auto& [value, good] : tried_)
-      if (out.answer == Answer::kNone && good && out.monotonic) {
+      if (out.answer == Answer::kNone && good) {
+        out.answer = Answer::kBetween;
         out.monotonic = false;
-        out.odd = value;
+        out.good = out.odd = value;
       }
     return out;
   }

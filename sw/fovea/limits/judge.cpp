@@ -6,9 +6,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/limits/figure_names.h"
 
 namespace fovea::limits {
 namespace {
@@ -23,22 +27,59 @@ std::string failed_words(const Condition& c, const std::string& name, double val
   return fmt::format("{} {}{}{}", number(value), c.words, value == 1 ? "" : "s", whose);
 }
 
+/// What the firmware was told to do with each frame (firmware.repeat).
+double remaps_per_frame(const points::PointResult& r) {
+  const std::filesystem::path file = r.folder / "run" / "config.json";
+  std::error_code error;
+  if (r.folder.empty() || !std::filesystem::exists(file, error)) return 1;
+  const auto json = nlohmann::json::parse(app::read_file(file, std::size_t{16} << 20), nullptr, false);
+  const auto parameters = json.is_object() ? json.find("params") : json.end();
+  if (!json.is_object() || parameters == json.end() || !parameters->contains("firmware.repeat")) return 1;
+  const auto& value = (*parameters)["firmware.repeat"]["value"];
+  return value.is_string() ? std::max(1.0, std::strtod(value.get<std::string>().c_str(), nullptr)) : 1;
+}
+
 /// Remaps follow one another, so one that takes longer than a frame period on average leads to a dropped frame sooner
 /// or later, even if buffers have hidden it in a short window. Empty: it does not, or the run does not say.
 std::string slow_remaps(const points::PointResult& r) {
-  const auto rate = r.stat("frame.rate"), mean = r.stat("frame.remap_time.mean");
-  if (!rate || !mean || *rate * *mean <= 1) return "";
+  const auto rate = steady_rate(r), mean = r.stat("frame.remap_time.mean");
+  const double remaps = remaps_per_frame(r);
+  if (!rate || !mean || *rate * remaps * *mean <= 1) return "";
+  if (remaps > 1)
+    return fmt::format("the {:.0f} remaps of a frame take {:.1f} % more than its period on average, so that frames "
+                       "will be dropped", remaps, 100 * (*rate * remaps * *mean - 1));
   return fmt::format("a remap takes {:.1f} % more than a frame period on average, so that frames will be dropped",
                      100 * (*rate * *mean - 1));
+}
+
+/// Frames shown again for which the decoder's search for syncs is no reason.
+std::optional<double> late_frames(const points::PointResult& r) {
+  const auto repeated = r.stat("frame.repeated");
+  if (!repeated) return std::nullopt;
+  return *repeated - r.stat("frame.repeated_relock").value_or(0);
 }
 
 }  // namespace
 
 std::vector<Condition> default_conditions() {
-  return {{"frame.dropped", false, 0, "dropped frame"},
-          {"frame.repeated", false, 0, "repeated frame", "frame.repeated_relock"},
-          {"capture.overflows", false, 0, "capture overflow"},
-          {"display.underflows", false, 0, "display underflow"}};
+  return {{"frame.dropped", false, 0, "dropped frame", "", "no frame is dropped"},
+          {"frame.repeated", false, 0, "repeated frame", "frame.repeated_relock",
+           "none is shown twice, but by a loop that slips once or while the decoder looks for a camera's syncs", true},
+          {"capture.overflows", false, 0, "capture overflow", "", "no capture overflows"},
+          {"display.underflows", false, 0, "display underflow", "", "no display underflows"}};
+}
+
+std::optional<double> steady_rate(const points::PointResult& r) {
+  const auto rate = r.stat("frame.rate"), shown = r.stat("frame.displayed"), repeated = r.stat("frame.repeated");
+  if (!rate || !shown || late_frames(r) != 1.0) return rate;
+  const double fresh = *shown - *repeated;
+  return fresh > 0 ? *rate * (fresh + 1) / fresh : *rate;
+}
+
+std::optional<double> slack(const points::PointResult& r) {
+  const auto rate = steady_rate(r), longest = r.stat("frame.remap_time.max");
+  if (!rate || !longest || *rate <= 0) return std::nullopt;
+  return 1 - *longest * remaps_per_frame(r) * *rate;
 }
 
 std::vector<Condition> conditions_with(const std::vector<std::string>& required) {
@@ -68,39 +109,45 @@ std::vector<Condition> conditions_with(const std::vector<std::string>& required)
 }
 
 std::string text_of(const Condition& c) {
+  if (!c.sentence.empty()) return c.sentence;
   return fmt::format("{}{} {} {}", c.metric, c.without.empty() ? "" : " - " + c.without, c.at_least ? ">=" : "<=",
                      number(c.bound));
 }
 
-Verdict judge(const points::PointResult& result, const std::vector<Condition>& conditions) {
+Verdict judge(const points::PointResult& result, const std::vector<Condition>& conditions, unsigned slips) {
   using Kind = Verdict::Kind;
   if (result.status == 3) return {Kind::kBad, result.message};
   if (result.status != 0)
     return {Kind::kUnknown,
             fmt::format("a run ended with status {}: {}", result.status, result.message), result.status};
   std::vector<std::string> failed;
+  bool once = false;
+  const bool may_slip = std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.slip; });
   for (const Condition& c : conditions) {
     bool found = false;
     for (const auto& [name, figure] : result.stats) {
       if (name != c.metric && !(name.starts_with("camera.") && name.ends_with("." + c.metric)))
         continue;
       found = true;
-      const double value = name == c.metric ? figure - result.stat(c.without).value_or(0) : figure;
-      if (c.at_least ? value < c.bound : value > c.bound)
-        failed.push_back(failed_words(c, name, value));
+      double value = name == c.metric ? figure - result.stat(c.without).value_or(0) : figure;
+      // A slip in the window takes a frame off its rate, one before the window does not.
+      if (may_slip && name == "frame.rate") value = steady_rate(result).value_or(value);
+      const double bound = c.bound + (c.slip ? slips : 0u);
+      if (!(c.at_least ? value < bound : value > bound)) continue;
+      once = once || (c.slip && value == bound + 1);
+      failed.push_back(failed_words(c, name, value));
     }
     if (found) continue;
     if (!result.units.contains(c.metric))
       return {Kind::kUnknown,
-              fmt::format("the run has no figure '{}'; those that it has are in {}",
-                          app::one_line(c.metric),
-                          app::one_line((result.folder / "run/stats.json").string()))};
+              fmt::format("the run has no figure '{}'{}", app::one_line(c.metric), names_hint(c.metric, result))};
     // A figure without a value: a rate or a mean of nothing.
     failed.push_back(c.metric + " has no value");
   }
-  if (failed.empty())
-    if (std::string slow = slow_remaps(result); !slow.empty()) failed.push_back(std::move(slow));
-  return {failed.empty() ? Kind::kGood : Kind::kBad, fmt::format("{}", fmt::join(failed, ", "))};
+  const std::string slow = slow_remaps(result);
+  once = once && failed.size() == 1 && slow.empty();
+  if (failed.empty() && !slow.empty()) failed.push_back(slow);
+  return {failed.empty() ? Kind::kGood : Kind::kBad, fmt::format("{}", fmt::join(failed, ", ")), 2, once};
 }
 
 }  // namespace fovea::limits

@@ -12,6 +12,7 @@
 
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/limits/answers.h"
+#include "sw/fovea/limits/figure_names.h"
 #include "sw/fovea/warnings.h"
 
 namespace fovea::limits {
@@ -109,6 +110,14 @@ Question question_of(const LimitsOptions& o, const ParamSet& params) {
   return q;
 }
 
+/// Those of --binds and --require.
+std::vector<AskedFigure> asked_figures(const LimitsOptions& o) {
+  std::vector<AskedFigure> out;
+  if (!o.binds.empty()) out.push_back({o.binds, "--binds"});
+  for (const std::string& r : o.require) out.push_back({r.substr(0, r.find_first_of("<>")), "--require"});
+  return out;
+}
+
 void warn_of_settings(const Session& session, const Settings& sets, const app::CliContext& context) {
   const app::WarningScope warnings(context.err, false);
   const auto run = session.effective(sets);
@@ -145,7 +154,8 @@ int status_of(const std::vector<std::unique_ptr<Study>>& studies) {
 }  // namespace
 
 void add_limits_command(CLI::App& app, LimitsOptions& o) {
-  CLI::App* c = app.add_subcommand("limits", "Search how far an experiment can be stretched, and what binds");
+  CLI::App* c = app.add_subcommand(
+      "limits", "Run an experiment over settings (--over), search how far it can be stretched, find out what binds");
   c->footer(kFooter);
   c->add_option("experiment", o.experiment, "Experiment file (YAML)")->required()->type_name("FILE");
   c->add_option("-s,--set", o.sets, "Set a parameter; may be repeated")
@@ -229,6 +239,7 @@ int command_limits(const LimitsOptions& o, const app::CliContext& context) {
                                 .progress = &context.err});
   Session session(context, o.experiment, runner, conditions, o.probes);
   warn_of_settings(session, o.sets, context);
+  check_figures(session, o.sets, asked_figures(o));
   std::vector<std::unique_ptr<Study>> studies;
   for (const Settings& s : over) studies.push_back(std::make_unique<Study>(session, question, o.sets, s));
   runner.may_follow = [&] {

@@ -83,6 +83,11 @@ std::string LoadSearch::rate_text(std::uint64_t n) const {
   return fmt::format("{:g} MB/s", static_cast<double>(n) * shape_.step);
 }
 
+std::optional<std::uint64_t> LoadSearch::answer() const {
+  if (search_->failure()) return std::nullopt;
+  return search_->outcome().answer == Bisection::Answer::kAll ? std::optional(last_) : search_->answer();
+}
+
 double LoadSearch::moved(std::uint64_t n) const {
   return (bytes_per_second(search_->at(n).result, place_.port) - before_) / kMega;
 }

@@ -1,6 +1,7 @@
 // The largest additional load that an experiment bears on a port of the crossbar.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,9 @@ class LoadSearch {
   const ValueSearch& search() const { return *search_; }
   const LoadPlace& place() const { return place_; }
   std::uint64_t last() const { return last_; }
-  /// "340 MB/s", or "as much as the port takes" for the last one.
+  /// The largest load that is borne; nothing if not even none is, or nothing is known.
+  std::optional<std::uint64_t> answer() const;
+  /// "340 MB/s", or "as much as the port takes" for the last one: what is asked for.
   std::string rate_text(std::uint64_t n) const;
   /// MB/s that the load moved in the window of a point, from its statistics.
   double moved(std::uint64_t n) const;

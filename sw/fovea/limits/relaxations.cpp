@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "model/board/clock_presets.h"
 #include "model/common/check.h"
@@ -53,20 +55,13 @@ const std::vector<Row>& rows_of_runs() {
        {{"ddr.command_fifo", "16"}, {"ddr.read_fifo", "512B"}, {"ddr.write_fifo", "512B"}}},
       {"ddr_scheduler", "the order of the SDRAM controller", "ready rows first, whatever the priority", "",
        {{"ddr.scheduler", "frfcfs"}}},
-  };
-  return rows;
-}
-
-/// Relaxations by what only a replay can change.
-const std::vector<Row>& rows_of_replays() {
-  static const std::vector<Row> rows = {
       {"row_timing", "the row timing of the SDRAM", "with rows opened and closed in 1 clock", "",
-       {{"ddr.tRP", "1 cycles"}, {"ddr.tRCD", "1 cycles"}, {"ddr.tRAS", "1 cycles"}, {"ddr.tRC", "1 cycles"},
-        {"ddr.tRRD", "1 cycles"}, {"ddr.tRTP", "1 cycles"}, {"ddr.tWR", "1 cycles"}}},
+       {{"ddr.ideal", "row_timing"}}},
       {"cas_latency", "the SDRAM's latency to the first data", "with CL and RL of 4 clocks", "",
-       {{"ddr.CL", "4 cycles"}, {"ddr.RL", "4 cycles"}}},
-      {"turnaround", "the SDRAM's change from writing to reading", "in 1 clock", "", {{"ddr.tWTR", "1 cycles"}}},
-      {"refresh", "the SDRAM's refresh", "without it", "", {{"ddr.tREFI", "0 cycles"}}},
+       {{"ddr.ideal", "cas_latency"}}},
+      {"turnaround", "the SDRAM's change from writing to reading", "in 1 clock", "", {{"ddr.ideal", "turnaround"}}},
+      {"refresh", "the SDRAM's refresh", "without it, and without the rows that it closes", "",
+       {{"ddr.ideal", "refresh"}}},
   };
   return rows;
 }
@@ -79,16 +74,25 @@ bool busy(const points::PointResult& plain, std::string_view master) {
   });
 }
 
+/// Settings at both ends of what is believed of a parameter.
+void add_belief(const ParamBase& p, Relaxation& r) {
+  const auto rank = [](Origin o) { return o == Origin::kAssumed ? 2 : o == Origin::kFamily ? 1 : 0; };
+  if (rank(p.origin()) > rank(r.origin)) r.origin = p.origin();
+  if (rank(p.origin()) == 0) return;
+  r.low.push_back(fmt::format("{}={}", p.key(), p.belief().low));
+  r.high.push_back(fmt::format("{}={}", p.key(), p.belief().high));
+}
+
 /// The settings of a row whose keys this program has, without those that are so already.
-void add_row(const Row& row, const ParamSet* params, const points::PointResult& plain,
-             std::vector<Relaxation>& out) {
-  Relaxation r{row.name, row.resource, row.how, params == nullptr, {}, {}, {}};
-  bool known = params == nullptr;
+void add_row(const Row& row, const ParamSet& params, const points::PointResult& plain, std::vector<Relaxation>& out) {
+  Relaxation r{row.name, row.resource, row.how, false, {}, {}, {}};
+  bool known = false;
   for (const Setting& s : row.settings) {
-    const ParamBase* p = params ? params->find(s.key) : nullptr;
-    known = known || p;
-    if (params && (!p || p->text() == s.value)) continue;
-    r.settings.push_back(fmt::format("{}={}", s.key, s.value));
+    const ParamBase* p = params.find(s.key);
+    if (!p) continue;
+    known = true;
+    add_belief(*p, r);
+    if (p->text() != s.value) r.settings.push_back(fmt::format("{}={}", s.key, s.value));
   }
   if (!known) return;
   if (!busy(plain, row.when)) r.idle = "no traffic";
@@ -96,32 +100,78 @@ void add_row(const Row& row, const ParamSet* params, const points::PointResult& 
   out.push_back(std::move(r));
 }
 
-/// The highest clock that the PLLs can give while the other one stays.
-void add_clock(const ParamSet& params, bool core, std::vector<Relaxation>& out) {
-  const auto* arm = dynamic_cast<const IntParam*>(params.find("clocks.arm"));
-  const auto* ddr = dynamic_cast<const IntParam*>(params.find("clocks.ddr"));
-  const ParamBase* preset = params.find("clocks.preset");
-  if (!arm || !ddr || !preset) return;
-  const board::ClockPreset& of = board::clock_preset(preset->text());
-  const Frequency now_core = (*arm)() ? Frequency((*arm)()) : of.core();
-  const Frequency now_ddr = (*ddr)() ? Frequency((*ddr)()) : of.ddr();
+/// The clocks of an experiment, and the highest that the PLLs can give while the other one stays.
+struct Clocks {
+  Frequency core, ddr, crossbar;
+  bool apart = false;                         // the crossbar's has been set
+  std::uint64_t best_core = 0, best_ddr = 0;  // MHz
+};
+
+std::uint64_t best_clock(const Clocks& now, bool core) {
   const Frequency most = board::most(core ? +[](const board::ClockPreset& p) { return p.core(); }
                                           : +[](const board::ClockPreset& p) { return p.ddr(); });
-  const double now = (core ? now_core : now_ddr).hertz();
   constexpr std::uint64_t kStep = 1'000'000;
   std::uint64_t best = static_cast<std::uint64_t>(most.hertz()) / kStep * kStep;
   const auto possible = [&](std::uint64_t f) {
-    return app::find_setting(core ? Frequency(f) : now_core, core ? now_ddr : Frequency(f)).has_value();
+    return app::find_setting(core ? Frequency(f) : now.core, core ? now.ddr : Frequency(f)).has_value();
   };
-  while (static_cast<double>(best) > now && !possible(best)) best -= kStep;
-  Relaxation r{core ? "core_clock" : "sdram_clock", core ? "the core's clock" : "the SDRAM's clock",
-               fmt::format("at {} MHz{}", best / kStep, core ? "" : ", crossbar and video clock with it"),
-               false, {fmt::format("clocks.{}={}MHz", core ? "arm" : "ddr", best / kStep)}, {}, {}};
-  if (static_cast<double>(best) <= now) {
-    r.how = "raised";
-    r.idle = "the PLLs give no higher one beside the other clock";
-  }
-  out.push_back(std::move(r));
+  while (static_cast<double>(best) > (core ? now.core : now.ddr).hertz() && !possible(best)) best -= kStep;
+  return best / kStep;
+}
+
+std::optional<Clocks> clocks_of(const ParamSet& params) {
+  const auto* arm = dynamic_cast<const IntParam*>(params.find("clocks.arm"));
+  const auto* ddr = dynamic_cast<const IntParam*>(params.find("clocks.ddr"));
+  const auto* crossbar = dynamic_cast<const IntParam*>(params.find("clocks.crossbar"));
+  const ParamBase* preset = params.find("clocks.preset");
+  if (!arm || !ddr || !crossbar || !preset) return std::nullopt;
+  const board::ClockPreset& of = board::clock_preset(preset->text());
+  Clocks out;
+  out.core = (*arm)() ? Frequency((*arm)()) : of.core();
+  out.ddr = (*ddr)() ? Frequency((*ddr)()) : of.ddr();
+  out.crossbar = (*crossbar)() ? Frequency((*crossbar)()) : board::ClockSetting::half(out.ddr);
+  out.apart = (*crossbar)() != 0;
+  out.best_core = best_clock(out, true);
+  out.best_ddr = best_clock(out, false);
+  return out;
+}
+
+/// The clock of the core, and those of the memory: on the chip one PLL gives the SDRAM's and, as half of it, the
+/// crossbar's. Apart from each other they say which of the two binds.
+void add_clocks(const ParamSet& params, std::vector<Relaxation>& out) {
+  const auto now = clocks_of(params);
+  if (!now) return;
+  const auto add = [&](const char* name, const char* resource, std::string how, std::vector<std::string> settings,
+                       bool higher) {
+    Relaxation r{name, resource, std::move(how), false, std::move(settings), {}, {}};
+    if (!higher) {
+      r.how = "raised";
+      r.idle = "the PLLs give no higher one beside the other clock";
+    }
+    out.push_back(std::move(r));
+  };
+  const auto above = [](std::uint64_t megahertz, Frequency f) {
+    return static_cast<double>(megahertz) * 1e6 > f.hertz();
+  };
+  const auto half = [](std::uint64_t megahertz) { return static_cast<double>(megahertz) / 2; };
+  const bool faster = above(now->best_ddr, now->ddr);
+  std::vector<std::string> together = {fmt::format("clocks.ddr={}MHz", now->best_ddr)};
+  if (now->apart) together.push_back("clocks.crossbar=0Hz");
+  add("core_clock", "the core's clock", fmt::format("at {} MHz", now->best_core),
+      {fmt::format("clocks.arm={}MHz", now->best_core)}, above(now->best_core, now->core));
+  add("pll1_clocks", "the PLL of SDRAM (SYSCLK7), crossbar (SYSCLK4) and video",
+      fmt::format("with the SDRAM at {} MHz and the crossbar at half of it, as the chip can", now->best_ddr),
+      together, faster);
+  add("sdram_clock", "the SDRAM's clock (SYSCLK7) alone",
+      fmt::format("at {} MHz, its timing kept in ns and the crossbar's clock as it is, which no chip can",
+                  now->best_ddr),
+      {fmt::format("clocks.ddr={}MHz", now->best_ddr),
+       fmt::format("clocks.crossbar={}Hz", std::llround(now->crossbar.hertz()))},
+      faster);
+  add("crossbar_clock", "the clock of crossbar, EDMA and registers (SYSCLK4) alone",
+      fmt::format("at {:g} MHz and the SDRAM's as it is, which no chip can", half(now->best_ddr)),
+      {fmt::format("clocks.crossbar={:g}MHz", half(now->best_ddr))},
+      faster && half(now->best_ddr) * 1e6 > now->crossbar.hertz());
 }
 
 void add_priorities(const ParamSet& params, const points::PointResult& plain, std::vector<Relaxation>& out) {
@@ -175,12 +225,10 @@ void add_masters(const points::PointResult& plain, std::vector<Relaxation>& out)
 
 std::vector<Relaxation> relaxations(const ParamSet& params, const points::PointResult& plain) {
   std::vector<Relaxation> out;
-  add_clock(params, true, out);
-  add_clock(params, false, out);
-  for (const Row& row : rows_of_runs()) add_row(row, &params, plain, out);
+  add_clocks(params, out);
+  for (const Row& row : rows_of_runs()) add_row(row, params, plain, out);
   add_priorities(params, plain, out);
   add_loads(params, out);
-  for (const Row& row : rows_of_replays()) add_row(row, nullptr, plain, out);
   add_masters(plain, out);
   return out;
 }

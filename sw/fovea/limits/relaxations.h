@@ -20,10 +20,15 @@ struct Relaxation {
   std::string how;       ///< what is done: "without its latency"
   /// True: the recorded requests of the plain run are replayed, because no parameter of a run does it.
   bool replay = false;
-  std::vector<std::string> settings;  ///< for `fovea run`, or `fovea replay`
+  std::vector<std::string> settings;  ///< for `fovea run`
   std::vector<std::string> options;   ///< for `fovea replay`
   /// Not empty: why it is not tried, such as that it is as good as it can be.
   std::string idle;
+  /// What is believed of the parameters that are set: the weakest origin, and where it is assumed or of the family, the
+  /// settings at both ends of their belief intervals.
+  Origin origin = Origin::kChoice;
+  std::vector<std::string> low = {}, high = {};
+  bool believed() const { return origin == Origin::kAssumed || origin == Origin::kFamily; }
 };
 
 /// All relaxations of an experiment. `params` are its parameters, `plain` is its run, which tells

@@ -30,6 +30,27 @@ void Session::run(const Settings& settings, const Settings& more, Done done, Set
   runner_.add(std::move(point), std::move(done));
 }
 
+void Session::judged_run(const Settings& settings, const Settings& more, Judged done, std::string label) {
+  run(
+      settings, more,
+      [this, settings, more, done, label](const points::PointResult& result) {
+        const Verdict verdict = judge(result, conditions_);
+        if (!verdict.once) return done(result, verdict);
+        Settings longer = settings;
+        longer.insert(longer.end(), more.begin(), more.end());
+        const auto effective = this->effective(longer);
+        const auto* frames = dynamic_cast<const IntParam*>(effective->params.find("run.frames"));
+        if (!frames) return done(result, verdict);
+        const std::string window = fmt::format("run.frames={}", longer_window((*frames)()));
+        longer.push_back(window);
+        const std::string what = !label.empty() ? label : fmt::format("{}", fmt::join(more, ", "));
+        run(
+            longer, {}, [this, done](const points::PointResult& again) { done(again, judge(again, conditions_, 1)); },
+            {}, what.empty() ? window : what + ", " + window);
+      },
+      {}, label);
+}
+
 void Session::replay(const points::PointResult& recorded, const Settings& settings, Done done,
                      Settings options) {
   points::Point point;
@@ -52,16 +73,31 @@ void ValueSearch::start(std::function<void()> done) {
 void ValueSearch::ask() {
   const auto value = bisection_.next();
   if (!value) return done_();
-  session_.run(base_, make_(*value), [this, v = *value](const points::PointResult& result) {
-    const Verdict verdict = judge(result, session_.conditions());
-    tried_.emplace(v, Tried{result, verdict});
-    if (verdict.kind == Verdict::Kind::kUnknown) {
-      failure_ = verdict;
-      return done_();
-    }
-    bisection_.tell(v, verdict.good());
-    ask();
-  }, {}, label_(*value));
+  session_.judged_run(
+      base_, make_(*value),
+      [this, v = *value](const auto& result, const Verdict& verdict) {
+        tried_.emplace(v, Tried{result, verdict});
+        if (verdict.kind == Verdict::Kind::kUnknown) {
+          failure_ = verdict;
+          return done_();
+        }
+        bisection_.tell(v, verdict.good());
+        ask();
+      },
+      label_(*value));
+}
+
+std::optional<std::uint64_t> ValueSearch::answer() const {
+  if (failure_) return std::nullopt;
+  const Bisection::Outcome o = outcome();
+  if (o.answer == Bisection::Answer::kUnknown || o.answer == Bisection::Answer::kNone) return std::nullopt;
+  if (o.answer != Bisection::Answer::kAll) return o.good;
+  std::uint64_t tightest = tried_.rbegin()->first;
+  for (const auto& [value, tried] : tried_) {
+    const auto left = slack(tried.result), least = slack(tried_.at(tightest).result);
+    if (left && least && *left < *least) tightest = value;
+  }
+  return tightest;
 }
 
 std::size_t ValueSearch::at_most_left() const {

@@ -29,6 +29,10 @@ class Session {
   /// shows unless there is a `label`. @throws UserError for settings that are not allowed
   void run(const Settings& settings, const Settings& more, Done done, Settings options = {},
            std::string label = {});
+  /// Runs as run() does and judges the result. A frame that was shown again once may be the slip of a loop that
+  /// keeps up from then on: the run with a longer window tells, and is the result.
+  using Judged = std::function<void(const points::PointResult&, const Verdict&)>;
+  void judged_run(const Settings& settings, const Settings& more, Judged done, std::string label = {});
   /// Replays the trace that a run with the options record() has left.
   void replay(const points::PointResult& recorded, const Settings& settings, Done done,
               Settings options = {});
@@ -69,6 +73,9 @@ class ValueSearch {
   const Tried& at(std::uint64_t value) const { return tried_.at(value); }
   const std::map<std::uint64_t, Tried>& tried() const { return tried_; }
   Bisection::Outcome outcome() const { return bisection_.outcome(); }
+  /// The value that answers the question: the edge; of values that are all good the one with the least left of a frame
+  /// period; between bad ends one that is good. Nothing if none is good, or nothing is known.
+  std::optional<std::uint64_t> answer() const;
   /// What kept the search from an answer; null: nothing.
   const Verdict* failure() const { return failure_ ? &*failure_ : nullptr; }
   const Settings& base() const { return base_; }

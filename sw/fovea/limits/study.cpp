@@ -33,11 +33,9 @@ void Study::start() {
     find_ = std::make_unique<ValueSearch>(
         session_, settings_, range_->last(), [=](std::uint64_t n) { return Settings{setting(n)}; }, setting);
     find_->start([this] {
-      if (question_.binds.empty() || find_->failure()) return;
-      const auto outcome = find_->outcome();
-      if (outcome.answer == Answer::kNone) return;
-      const std::uint64_t n = outcome.answer == Answer::kAll ? range_->last() : outcome.good;
-      binds_at_ = range_->setting(n);
+      const auto n = find_->answer();
+      if (question_.binds.empty() || !n) return;
+      binds_at_ = range_->setting(*n);
       start_binds({binds_at_});
     });
   } else if (!question_.binds.empty()) {
@@ -45,9 +43,9 @@ void Study::start() {
   }
   const bool nothing_else = !range_ && question_.binds.empty();
   if (!question_.load && !nothing_else) return;
-  session_.run(settings_, {}, [this](const points::PointResult& result) {
+  session_.judged_run(settings_, {}, [this](const points::PointResult& result, const Verdict& verdict) {
     plain_ = result;
-    plain_verdict_ = judge(result, session_.conditions());
+    plain_verdict_ = verdict;
     if (question_.load && plain_verdict_.good()) start_loads();
   });
 }

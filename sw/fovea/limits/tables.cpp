@@ -32,6 +32,7 @@ const char* word(Answer answer) {
     case Answer::kLargest: return "largest";
     case Answer::kSmallest: return "smallest";
     case Answer::kAll: return "all";
+    case Answer::kBetween: return "between";
     case Answer::kNone: return "none";
     case Answer::kUnknown: break;
   }
@@ -50,9 +51,11 @@ std::vector<std::string> over_cells(const Study& study, bool keys) {
 
 void add_result(const points::PointResult& r, std::vector<std::string>& row) {
   row.insert(row.end(), {number(r.stat("frame.rate")), number(r.stat("frame.remap_time.mean")),
-                         number(r.stat("frame.remap_time.max")), number(r.stat("ddr.utilisation"))});
+                         number(r.stat("frame.remap_time.max")), number(r.stat("ddr.utilisation")),
+                         number(r.stat("frame.latency.max")), number(slack(r))});
 }
-constexpr const char* kResult[] = {"frame.rate", "frame.remap_time.mean", "frame.remap_time.max", "ddr.utilisation"};
+constexpr const char* kResult[] = {"frame.rate",      "frame.remap_time.mean", "frame.remap_time.max",
+                                   "ddr.utilisation", "frame.latency.max",     "left_of_frame_period"};
 
 struct SearchRow {
   std::string what;
@@ -62,24 +65,23 @@ struct SearchRow {
   std::function<double(std::uint64_t)> moved;
 };
 
-std::vector<std::string> row_of(const SearchRow& r, std::uint64_t last) {
+std::vector<std::string> row_of(const SearchRow& r, std::optional<std::uint64_t> good) {
   std::vector<std::string> row = {r.what, r.priority ? std::to_string(*r.priority) : ""};
   if (r.search->failure()) {
-    row.insert(row.end(), {"unknown", "", "", "", r.search->failure()->why, ""});
+    row.insert(row.end(), {"unknown", "", "", "", r.search->failure()->why, "", ""});
     row.insert(row.end(), std::size(kResult), "");
     return row;
   }
   const auto o = r.search->outcome();
   const bool edge = o.answer == Answer::kLargest || o.answer == Answer::kSmallest;
-  const std::uint64_t good = edge ? o.good : last;
-  const bool any = o.answer != Answer::kNone;
   row.push_back(word(o.answer));
-  row.push_back(any ? r.name(good) : "");
-  row.push_back(any && r.moved && good > 0 ? app::number_text(r.moved(good)) : "");
-  row.push_back(edge ? r.name(o.bad) : any ? "" : r.name(0));
-  row.push_back(edge ? r.search->at(o.bad).verdict.why : any ? "" : r.search->at(0).verdict.why);
+  row.push_back(good ? r.name(*good) : "");
+  row.push_back(good && r.moved && *good > 0 ? app::number_text(r.moved(*good)) : "");
+  row.push_back(edge ? r.name(o.bad) : good ? "" : r.name(0));
+  row.push_back(edge ? r.search->at(o.bad).verdict.why : good ? "" : r.search->at(0).verdict.why);
   row.push_back(o.monotonic ? "yes" : "no");
-  add_result(r.search->at(any ? good : 0).result, row);
+  row.push_back(std::to_string(r.search->tried().size()));
+  add_result(r.search->at(good.value_or(0)).result, row);
   return row;
 }
 
@@ -87,7 +89,8 @@ std::vector<std::string> row_of(const SearchRow& r, std::uint64_t last) {
 
 std::string limits_csv(const std::vector<std::unique_ptr<Study>>& studies) {
   std::vector<std::string> header = over_cells(*studies.front(), true);
-  header.insert(header.end(), {"searched", "priority", "answer", "good", "moved_MBps", "bad", "why_bad", "monotonic"});
+  header.insert(header.end(),
+                {"searched", "priority", "answer", "good", "moved_MBps", "bad", "why_bad", "monotonic", "tried"});
   header.insert(header.end(), std::begin(kResult), std::end(kResult));
   std::string out = line(header);
   for (const auto& study : studies) {
@@ -98,18 +101,17 @@ std::string limits_csv(const std::vector<std::unique_ptr<Study>>& studies) {
       out += line(row);
     };
     if (study->find())
-      add(row_of({study->range()->key(), {}, study->find(),
-                  [&](std::uint64_t n) { return study->range()->text(n); }, {}},
-                 study->range()->last()));
+      add(row_of(
+          {study->range()->key(), {}, study->find(), [&](std::uint64_t n) { return study->range()->text(n); }, {}},
+          study->find()->answer()));
     for (const auto& load : study->loads())
       add(row_of({"load on " + load->place().port, load->place().priority, &load->search(),
-                  [&](std::uint64_t n) { return load->rate_text(n); },
-                  [&](std::uint64_t n) { return load->moved(n); }},
-                 load->last()));
+                  [&](std::uint64_t n) { return load->rate_text(n); }, [&](std::uint64_t n) { return load->moved(n); }},
+                 load->answer()));
     if (study->plain()) {
       const Verdict& v = study->plain_verdict();
       const char* const kinds[] = {"met", "not met", "unknown"};
-      std::vector<std::string> row = {"as it is", "", kinds[static_cast<int>(v.kind)], "", "", "", v.why, ""};
+      std::vector<std::string> row = {"as it is", "", kinds[static_cast<int>(v.kind)], "", "", "", v.why, "", ""};
       add_result(*study->plain(), row);
       add(row);
     }
@@ -119,8 +121,9 @@ std::string limits_csv(const std::vector<std::unique_ptr<Study>>& studies) {
 
 std::string binds_csv(const std::vector<std::unique_ptr<Study>>& studies) {
   std::vector<std::string> header = over_cells(*studies.front(), true);
-  header.insert(header.end(), {"at", "resource", "binds", "gain", "metric", "plain", "reference", "relaxed", "unit",
-                               "by", "settings", "remark"});
+  header.insert(header.end(),
+                {"at", "resource", "binds", "gain", "metric", "plain", "reference", "relaxed", "unit", "by", "settings",
+                 "remark", "origin", "low", "plain_low", "gain_low", "high", "plain_high", "gain_high"});
   std::string out = line(header);
   for (const auto& study : studies) {
     if (!study->binds() || study->binds()->failure()) continue;
@@ -128,11 +131,18 @@ std::string binds_csv(const std::vector<std::unique_ptr<Study>>& studies) {
     for (const Binds::Row& r : b.rows()) {
       std::vector<std::string> row = over_cells(*study, false), settings = r.relaxation.settings;
       settings.insert(settings.end(), r.relaxation.options.begin(), r.relaxation.options.end());
-      row.insert(row.end(),
-                 {study->binds_at(), r.relaxation.name, !r.gain ? "" : r.binds() ? "yes" : "no", number(r.gain),
-                  b.metric(), number(b.plain()), number(r.before), number(r.after), b.unit(),
-                  r.relaxation.replay ? "replay" : "run", fmt::format("{}", fmt::join(settings, " ")),
-                  r.relaxation.idle.empty() ? r.failure : r.relaxation.idle});
+      row.insert(
+          row.end(),
+          {study->binds_at(), r.relaxation.name,
+           !r.gain        ? ""
+           : r.binds()    ? "yes"
+           : r.may_bind() ? "perhaps"
+                          : "no",
+           number(r.gain), b.metric(), number(b.plain()), number(r.before), number(r.after), b.unit(),
+           r.relaxation.replay ? "replay" : "run", fmt::format("{}", fmt::join(settings, " ")),
+           r.relaxation.idle.empty() ? r.failure : r.relaxation.idle, std::string(to_string(r.relaxation.origin)),
+           fmt::format("{}", fmt::join(r.relaxation.low, " ")), number(r.low().plain), number(r.low().gain),
+           fmt::format("{}", fmt::join(r.relaxation.high, " ")), number(r.high().plain), number(r.high().gain)});
       out += line(row);
     }
   }
@@ -152,7 +162,7 @@ std::string points_csv(std::vector<points::Runner::Entry> entries, const std::ve
     if (point.command == "run") {
       const Verdict v = judge(*result, conditions);
       const char* const kinds[] = {"met", "not met", "unknown"};
-      row.insert(row.end(), {kinds[static_cast<int>(v.kind)], v.why});
+      row.insert(row.end(), {v.once ? "once" : kinds[static_cast<int>(v.kind)], v.why});
     } else {
       row.insert(row.end(), {"", result->message});
     }

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numeric>
+#include <ranges>
 
 #include "model/common/check.h"
+#include "model/common/nearest.h"
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/run_files.h"
@@ -59,20 +60,6 @@ void read_stats(const json& stats, RunFigures& run) {
     m.whole = value.is_number_integer();
     if (value.is_number()) m.value = value.get<double>();
   }
-}
-
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] != b[j]);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace
@@ -129,14 +116,7 @@ RunFigures read_run(const fs::path& folder) {
 }
 
 std::string nearest_metric(const RunFigures& run, const std::string& name) {
-  std::string best;
-  std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
-  for (const auto& [candidate, unused] : run.metrics)
-    if (const std::size_t d = edit_distance(name, candidate); d < least) {
-      least = d;
-      best = candidate;
-    }
-  return best;
+  return nearest_name(name, std::views::keys(run.metrics));
 }
 
 std::string exact_text(double value, bool whole) {

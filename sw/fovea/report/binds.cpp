@@ -25,6 +25,13 @@ std::optional<double> number_or_nothing(const CsvPlace& place, const std::string
   return number(place, field);
 }
 
+/// "assumed: 25 % to 57 %", of parameters whose figures are not public.
+std::string belief(const Relaxed& r) {
+  if (r.origin != "assumed" && r.origin != "family") return "";
+  if (!r.gain_low || !r.gain_high) return r.origin;
+  return fmt::format("{}: {} to {}", r.origin, explain::percent(*r.gain_low), explain::percent(*r.gain_high));
+}
+
 /// A double is written with as many digits as it takes to be read back.
 bool same(double a, double b) { return std::abs(a - b) <= 1e-12 * std::abs(b); }
 
@@ -48,7 +55,7 @@ std::vector<Relaxed> load_binds(const std::filesystem::path& folder, const Resul
                     if (columns.empty()) {
                       for (std::size_t i = 0; i < fields.size(); ++i) columns[fields[i]] = i;
                       for (const char* column : {"resource", "binds", "gain", "metric", "plain", "reference", "relaxed",
-                                                 "unit", "by", "settings", "remark"})
+                                                 "unit", "by", "settings", "remark", "origin", "gain_low", "gain_high"})
                         if (!columns.contains(column)) refuse(fmt::format("there is no column '{}'", column));
                       return;
                     }
@@ -65,7 +72,10 @@ std::vector<Relaxed> load_binds(const std::filesystem::path& folder, const Resul
                               number_or_nothing(place, text("gain")),
                               number_or_nothing(place, text("plain")),
                               number_or_nothing(place, text("reference")),
-                              number_or_nothing(place, text("relaxed"))};
+                              number_or_nothing(place, text("relaxed")),
+                              text("origin"),
+                              number_or_nothing(place, text("gain_low")),
+                              number_or_nothing(place, text("gain_high"))};
                     if (!r.plain) return;
                     const auto own = run.value(r.metric);
                     if (own && same(*r.plain, *own))
@@ -94,7 +104,8 @@ std::vector<explain::Finding> binds_findings(const std::vector<Relaxed>& rows) {
     for (const Relaxed* r : of) {
       tried += r->gain.has_value();
       if (r->binds == "yes" && r->gain)
-        binding.push_back(fmt::format("{} ({} better)", r->resource, explain::percent(*r->gain)));
+        binding.push_back(fmt::format("{} ({} better{}{})", r->resource, explain::percent(*r->gain),
+                                      belief(*r).empty() ? "" : "; ", belief(*r)));
     }
     if (tried == 0) continue;
     const std::string others = fmt::format("{} of the {} resources that were relaxed", tried - binding.size(), tried);
@@ -113,7 +124,7 @@ std::vector<explain::Finding> binds_findings(const std::vector<Relaxed>& rows) {
 
 std::string binds_section(const std::vector<Relaxed>& rows) {
   Table table("Resources that were relaxed, one at a time; one binds if the figure gets more than 2 % better",
-              {"Resource", "Binds", "#Better by", "Figure", "#Before", "#Relaxed", "By", "Settings"});
+              {"Resource", "Binds", "#Better by", "Figure", "#Before", "#Relaxed", "By", "Settings", "Believed"});
   const auto cell = [](const std::optional<double>& v, const std::string& unit) {
     return v ? fmt::format("<data value=\"{}\">{}</data>", app::number_text(*v), escaped(app::human_text(*v, unit)))
              : std::string("-");
@@ -121,7 +132,7 @@ std::string binds_section(const std::vector<Relaxed>& rows) {
   for (const Relaxed& r : rows)
     table.row({escaped(r.resource), r.binds.empty() ? escaped(r.remark) : escaped(r.binds), cell(r.gain, "ratio"),
                fmt::format("<code>{}</code>", escaped(r.metric)), cell(r.reference, r.unit), cell(r.relaxed, r.unit),
-               escaped(r.by), fmt::format("<code>{}</code>", escaped(r.settings))});
+               escaped(r.by), fmt::format("<code>{}</code>", escaped(r.settings)), escaped(belief(r))});
   return table.empty() ? absent("No resource was relaxed.") : table.html();
 }
 

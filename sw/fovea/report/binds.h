@@ -14,9 +14,11 @@ struct Results;
 /// A row of binds.csv: one resource, relaxed alone.
 struct Relaxed {
   std::string resource;
-  std::string binds;  ///< yes, no, or empty: not tried
+  std::string binds;  ///< yes, no, perhaps (at an end of what is believed of it), or empty: not tried
   std::string metric, unit, by, settings, remark;
   std::optional<double> gain, plain, reference, relaxed;
+  std::string origin = {};                              ///< of the parameters that were relaxed
+  std::optional<double> gain_low = {}, gain_high = {};  ///< from both ends of what is believed of them
 };
 
 /// The rows that are about this run: those whose plain run has the same figure.
