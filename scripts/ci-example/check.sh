@@ -11,10 +11,10 @@ cd "$(dirname "$0")"
 mkdir -p "$build"
 build=$(realpath "$build")
 make -sB -C firmware BUILD="$build" FLAGS="${FLAGS-}"
-"$fovea" run timing.yaml -s firmware.elf="$build/app.elf" --max-time 1s --no-frames ${FOVEA_RUN_OPTIONS-} \
+"$fovea" run timing.yaml -s firmware.elf="$build/app.elf" --max-time 1s --no-frames --profile \
   -o "$build/timing" >"$build/run.log"
 case ${1-} in
   --bless) exec "$fovea" bless "$build/timing" --against baseline.yaml --why "$2" ;;
 esac
-"$fovea" check "$build/timing" --against baseline.yaml --junit "$build/timing.xml" --all \
-  ${FOVEA_CHECK_OPTIONS-}
+"$fovea" check "$build/timing" --against baseline.yaml --junit "$build/timing.xml" \
+  --markdown "$build/timing.md" --all ${FOVEA_CHECK_OPTIONS-}

@@ -218,6 +218,20 @@ void refuse_combinations(const ExecOptions& o) {
         "file");
 }
 
+/// What ran, for config.json: the options that decide the result.
+Provenance origin_of(const ParamSet& params, const ExecOptions& o) {
+  Provenance out = provenance_of(params, {{"program", o.program}});
+  out.command = "exec";
+  out.input = std::filesystem::path(o.program).filename().string();
+  out.arguments = o.arguments;
+  for (const auto& [set, word] :
+       {std::pair(o.board, "--board"), {o.caches, "--caches"}, {o.fast_memory, "--fast-memory"}, {o.thumb, "--thumb"}})
+    if (set) out.options.push_back(word);
+  for (const auto& [word, value] : {std::pair("--load", o.load), {"--entry", o.entry}})
+    if (!value.empty()) out.options.insert(out.options.end(), {word, value});
+  return out;
+}
+
 /// The keys that a program sets by running on the board, and those of the command line.
 void set_keys(const ExecOptions& o, Experiment& experiment) {
   if (o.board) {
@@ -299,8 +313,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   std::optional<RunDir> dir;
   if (!o.out_dir.empty()) {
     dir.emplace(o.out_dir, "exec");
-    dir->write("config.json",
-               config_json(params, experiment, provenance_of(params, {{"program", o.program}})));
+    dir->write("config.json", config_json(params, experiment, origin_of(params, o)));
   }
   HostConsole console(context.out, context.err, context.stop);
   // Never updated in place, because the program writes to the same terminal.

@@ -16,7 +16,7 @@ namespace fovea::app {
 
 /// Thrown if a signal requests a stop while footage is decoded.
 struct Stopped : std::runtime_error {
-  Stopped() : std::runtime_error("stopped before the simulation began") {}
+  explicit Stopped(const std::string& what = "stopped before the simulation began") : std::runtime_error(what) {}
 };
 
 struct DecodeOptions {

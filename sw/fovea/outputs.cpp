@@ -148,14 +148,18 @@ std::string config_json(const ParamSet& params, const Experiment& experiment,
                         {"belief", belief_json(p->belief())},
                         {"description", p->sentence()}};
   }
-  return file_json({{"format", kRunFormat},
-                    {"version", provenance.version},
-                    {"commit", provenance.commit},
-                    {"modified", provenance.modified},
-                    {"experiment", experiment.name()},
-                    {"sha256", hashes},
-                    {"params", values}},
-                   {"sha256", "params"});
+  Json out = {{"format", kRunFormat},
+              {"version", provenance.version},
+              {"commit", provenance.commit},
+              {"modified", provenance.modified},
+              {"experiment", experiment.name()}};
+  if (!provenance.command.empty())
+    out.update({{"command", provenance.command},
+                {"input", provenance.input},
+                {"arguments", provenance.arguments},
+                {"options", provenance.options}});
+  out.update({{"sha256", hashes}, {"params", values}});
+  return file_json(out, {"sha256", "params"});
 }
 
 std::vector<Warning> collect_warnings(const Diagnostics& diagnostics, bool replay) {

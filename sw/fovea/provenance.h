@@ -15,6 +15,10 @@ struct Provenance {
   bool modified = false;     ///< the source differed from that commit
   /// SHA-256 of each file, with the key or argument that names it; empty if it cannot be read.
   std::vector<std::pair<std::string, std::string>> inputs = {};
+  /// Of `exec` and `replay`, which have no experiment: the command, the name of the file that it ran, and
+  /// the words that decide its result besides the parameters.
+  std::string command = {}, input = {};
+  std::vector<std::string> arguments = {}, options = {};
 };
 
 using InputFiles = std::vector<std::pair<std::string, std::filesystem::path>>;

@@ -110,6 +110,17 @@ std::vector<std::string> set_replay_keys(const ReplayOptions& options, const tra
   return lines;
 }
 
+/// What was replayed, for config.json: the options that decide the result.
+Provenance origin_of(const ParamSet& set, const ReplayOptions& options) {
+  Provenance out = provenance_of(set, {{"trace", options.trace}});
+  out.command = "replay";
+  out.input = fs::path(options.trace).filename().string();
+  if (options.memory_only) out.options.push_back("--memory-only");
+  if (options.wrap) out.options.push_back("--wrap");
+  for (const auto& master : options.without) out.options.insert(out.options.end(), {"--without", master});
+  return out;
+}
+
 /// False: a signal has ended it.
 bool replay_to_end(ReplayPath& path, Picoseconds start, const CliContext& context) {
   // Slices only let a signal in.
@@ -147,8 +158,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
     commands.emplace(options.command_trace);
   }
   // The hash of a long trace takes as long as a part of the replay; nothing but config.json needs it.
-  std::future<Provenance> provenance = std::async(
-      std::launch::async, [&] { return provenance_of(set, {{"trace", options.trace}}); });
+  std::future<Provenance> provenance = std::async(std::launch::async, [&] { return origin_of(set, options); });
 
   trace::BoundedSource wrapped(one_line(options.trace), *trace.source,
                                {params.ddr.size_bytes(), true});

@@ -155,6 +155,8 @@ expect refused_name 7 "the file '/tmp/[^']*' is refused; allowed: names relative
 [ "$(grep -c 'is refused' <<<"$text")" = 1 ] || { echo "refused_name: said more than once"; failures=$((failures + 1)); }
 grep -q '"sha256": {' "$out/on/config.json" && grep -q "\"program\": \"$(sha256sum <"$programs/heap_thumb_O2.elf" | cut -c1-64)\"" "$out/on/config.json" ||
   { echo 'config.json does not hold the hash of the program'; failures=$((failures + 1)); }
+grep -q '"command": "exec"' "$out/on/config.json" && grep -q '"input": "heap_thumb_O2.elf"' "$out/on/config.json" ||
+  { echo 'config.json does not name the program'; failures=$((failures + 1)); }
 
 # Equal runs, equal bytes; a slower SDRAM, more clocks.
 for n in 1 2 slow; do

@@ -2,12 +2,10 @@
 #include <sqlite3.h>
 
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "sw/fovea/cli.h"
 #include "sw/fovea/regression/compare.h"
 #include "sw/fovea/regression/trend.h"
-#include "tb/regression/run_maker.h"
+#include "tb/regression/command_fixture.h"
 
 namespace fovea::regression {
 namespace {
@@ -19,31 +17,6 @@ using test::user_error;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-class RegressionCommandTest : public testing::Test {
- protected:
-  RegressionCommandTest() : slow(profiled()) {
-    a = profiled().write(dir, "a").string();
-    slow.figure("frame.remap_time.mean", "0.0042", "s").figure("extra", "1");
-    slow.profile.replace(slow.profile.find("vpbe,50"), 7, "vpbe,70");
-    slow.profile.replace(slow.profile.find("capture,,,300"), 13, "capture,,,280");
-    slow.figure("cpu.idle", "280", "cycles");
-    b = slow.write(dir, "b").string();
-    base = (dir / "base.yaml").string();
-  }
-  int cli(std::vector<std::string> args) {
-    out.str("");
-    err.str("");
-    const int status = app::run_cli(args, {.out = out, .err = err, .make_simulation = nullptr});
-    const std::string text = err.str();
-    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 1) << text;
-    return status;
-  }
-  TempDir dir;
-  RunMaker slow;
-  std::string a, b, base;
-  std::ostringstream out, err;
-};
 
 TEST_F(RegressionCommandTest, EqualRunsEndWithZeroDifferentOnesWithOne) {
   EXPECT_EQ(cli({"compare", a, a}), 0) << err.str();
@@ -237,19 +210,33 @@ TEST_F(RegressionCommandTest, BlessingMakesAReferenceThatIsMissingOrPoorer) {
   EXPECT_THAT(read_text(dir / "kept/functions.csv"), HasSubstr("irq,irq.c,0x00000100,64,aa"));
 }
 
-// The reference of a baseline may be named like a folder that has something in it.
+// A reference is never written into a folder that holds something else: another name is taken.
 TEST_F(RegressionCommandTest, BlessingWritesNoReferenceIntoAnotherFolder) {
   const std::string stats = read_text(dir / "a/stats.json");
+  dir.write("full/mine.txt", "mine\n");
   for (const char* name : {"a", "full"}) {
-    dir.write("full/mine.txt", "mine\n");
     const std::string file = (dir / (std::string(name) + ".yaml")).string();
+    EXPECT_EQ(cli({"bless", a, "--against", file, "--why", "x"}), 0) << name << err.str();
+    EXPECT_THAT(out.str(), HasSubstr(std::string(name) + "-reference\n"));
+    EXPECT_TRUE(fs::exists(dir / (std::string(name) + "-reference/figures.csv")));
+    EXPECT_FALSE(fs::exists(dir / (std::string(name) + "/figures.csv")));
+    EXPECT_EQ(cli({"check", b, "--against", file}), 1);
+    EXPECT_THAT(out.str(), HasSubstr("blamed: remap (remap.c:21)"));
+    fs::remove(file);
+    fs::remove_all(dir / (std::string(name) + "-reference"));
+    dir.write(std::string(name) + "-reference/mine.txt", "mine\n");
     EXPECT_EQ(cli({"bless", a, "--against", file, "--why", "x"}), 2) << name;
-    EXPECT_THAT(err.str(), HasSubstr("would be the reference, but it holds something else"));
-    EXPECT_FALSE(std::filesystem::exists(file)) << "a baseline without its reference";
-    EXPECT_FALSE(std::filesystem::exists(dir / (std::string(name) + "/figures.csv")));
+    EXPECT_THAT(err.str(), HasSubstr("beside it hold something else, and one of them would be the reference"));
+    EXPECT_FALSE(fs::exists(file)) << "a baseline without its reference";
   }
   EXPECT_EQ(read_text(dir / "a/stats.json"), stats);
   EXPECT_EQ(read_text(dir / "full/mine.txt"), "mine\n");
+  // A reference that is named by hand.
+  dir.write("hand.yaml",
+            "format: fovea baseline 1\nexperiment: tiny\nsimulator: {version: 0.1.0, commit: aaaaaaaaaaaa}\n"
+            "reference: full\nmetrics:\n  cpu.idle: {value: 299, unit: cycles}\n");
+  EXPECT_EQ(cli({"bless", a, "--against", (dir / "hand.yaml").string(), "--why", "x"}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("would be the reference, but it holds something else"));
 }
 
 TEST_F(RegressionCommandTest, OtherFilesAreNotReplaced) {
@@ -268,100 +255,6 @@ TEST_F(RegressionCommandTest, OtherFilesAreNotReplaced) {
   sqlite3_close(db);
   EXPECT_EQ(cli({"trend", a, "--database", (dir / "foreign.db").string()}), 2);
   EXPECT_THAT(err.str(), HasSubstr("another program"));
-}
-
-TEST_F(RegressionCommandTest, TrendKeepsOneLineForEachCommit) {
-  const std::string db = (dir / "t.db").string(), svg = (dir / "t.svg").string();
-  EXPECT_EQ(cli({"trend", "--database", db, "--plot", svg}), 2);
-  EXPECT_EQ(cli({"trend", "--database", db}), 2);
-  ASSERT_EQ(cli({"trend", a, "--database", db, "--commit", "one", "--host-instructions", "90.5"}), 0) << err.str();
-  EXPECT_THAT(out.str(), Not(HasSubstr("host instructions")));
-  ASSERT_EQ(cli({"trend", a, "--database", db, "--commit", "two"}), 0) << err.str();
-  EXPECT_THAT(out.str(), HasSubstr("two, without the simulator's host instructions: the host did not count them"));
-  ASSERT_EQ(cli({"trend", b, "--database", db, "--commit", "three"}), 0);
-  // A commit that was measured again keeps its place.
-  ASSERT_EQ(cli({"trend", b, "--database", db, "--commit", "one", "--host-instructions", "91", "--plot", svg}), 0);
-  // Where the host counts, the run itself says it; the option has precedence.
-  dir.write("b/host.json", "{\"host_instructions\": {\"value\": 77.25, \"unit\": \"1\"}}\n");
-  ASSERT_EQ(cli({"trend", b, "--database", db, "--commit", "three"}), 0);
-  const auto lines = TrendFile(db).lines("");
-  ASSERT_EQ(lines.size(), 3u);
-  EXPECT_EQ(lines[2].host_instructions, 77.25);
-  EXPECT_EQ(lines[0].commit, "one");
-  EXPECT_EQ(lines[0].host_instructions, 91);
-  EXPECT_EQ(lines[0].figures.at("frame.remap_time.mean").value, 0.0042);
-  EXPECT_EQ(lines[1].commit, "two");
-  EXPECT_EQ(lines[1].host_instructions, std::nullopt);
-  EXPECT_EQ(lines[1].figures.at("cpu.cycles").value, 1000);
-  EXPECT_TRUE(lines[1].figures.at("cpu.cycles").whole);
-  EXPECT_EQ(lines[1].figures.at("cpu.cycles").unit, "cycles");
-  EXPECT_EQ(TrendFile(db).lines("other").size(), 0u);
-  EXPECT_THAT(read_text(svg), AllOf(HasSubstr("<svg"), HasSubstr("frame.remap_time.mean"),
-                                    HasSubstr("host instructions"), HasSubstr("three tiny: 4.2 ms")));
-  EXPECT_EQ(cli({"trend", "--database", db, "--plot", svg, "--figure", "no.such"}), 2);
-}
-
-// The picture places values in proportion: 1, 2 and 3 lie on a straight line.
-std::size_t occurrences(const std::string& text, const std::string& what) {
-  std::size_t n = 0;
-  for (auto at = text.find(what); at != text.npos; at = text.find(what, at + what.size())) ++n;
-  return n;
-}
-
-TEST(TrendPlotTest, CurvesAreInProportion) {
-  std::vector<TrendLine> lines;
-  for (const int i : {1, 2, 3})
-    lines.push_back({"c" + std::to_string(i), "<e>", "s", {}, {{"x", {static_cast<double>(i), "1", true}}}});
-  const std::string svg = trend_svg(lines, {"x", "y"});
-  // 720 wide from 96 on; 110 high from 64 on; 10 % are left free at the ends.
-  EXPECT_THAT(svg, HasSubstr("<path d=\"M96.0 169.0L456.0 119.0L816.0 69.0\""));
-  EXPECT_THAT(svg, AllOf(HasSubstr("&lt;e&gt;"), Not(HasSubstr("<e>")), Not(HasSubstr(">y<"))));
-  EXPECT_THAT(svg, Not(HasSubstr("change since"))) << "one experiment: values";
-  // The middle, 2, stands at half of 110; letters stand on a line 4 below.
-  EXPECT_THAT(svg, AllOf(HasSubstr("y1=\"119.0\" y2=\"119.0\""),
-                         HasSubstr("<text x=\"88\" y=\"123.0\" text-anchor=\"end\" fill=\"#404040\">2</text>")));
-}
-
-// Several experiments: as changes. 10 -> 11 and 1,000 -> 900 are +10 % and -10 % of the same panel.
-TEST(TrendPlotTest, CurvesOfSeveralExperimentsAreChanges) {
-  std::vector<TrendLine> lines;
-  for (const auto& [commit, experiment, value] :
-       {std::tuple("c1", "a", 10.0), {"c1", "b", 1000.0}, {"c2", "a", 11.0}, {"c2", "b", 900.0}})
-    lines.push_back({commit, experiment, "s", {}, {{"x", {value, "1", true}}}});
-  const std::string svg = trend_svg(lines, {"x"});
-  EXPECT_THAT(svg, AllOf(HasSubstr("change since the first commit"), HasSubstr("M96.0 119.0L816.0 69.0"),
-                         HasSubstr("M96.0 119.0L816.0 169.0"), HasSubstr("c2 b: 900")));
-  // The legend: each experiment once, 30 and 7.5 for each letter apart.
-  EXPECT_THAT(svg,
-              AllOf(HasSubstr("<text x=\"106\" y=\"22\">a</text>"), HasSubstr("<text x=\"144\" y=\"22\">b</text>")));
-  EXPECT_EQ(occurrences(svg, "y=\"22\""), 2u);
-}
-
-// What hardly changes is drawn in the middle: the panel then has half a per cent to each side, of which 90 % are named.
-TEST(TrendPlotTest, CurvesThatDoNotChangeAreDrawnInTheMiddle) {
-  std::vector<TrendLine> lines;
-  for (const char* commit : {"c1", "c2"})
-    for (const char* experiment : {"a", "b"}) lines.push_back({commit, experiment, "s", {}, {{"x", {7.0, "1", true}}}});
-  const std::string svg = trend_svg(lines, {"x"});
-  EXPECT_THAT(svg, AllOf(HasSubstr("M96.0 119.0L816.0 119.0"), HasSubstr(">+0.45 %<"), HasSubstr(">-0.45 %<")));
-}
-
-// Hashes are cut as git does; of other names 14 letters fit.
-TEST(TrendPlotTest, LongNamesOfCommitsAreCut) {
-  const auto label = [](const std::string& commit) {
-    const std::string svg = trend_svg({{commit, "e", "s", {}, {{"x", {5.0, "1", true}}}}}, {"x"});
-    const auto end = svg.rfind("</text>"), begin = svg.rfind('>', end - 1) + 1;
-    return svg.substr(begin, end - begin);
-  };
-  EXPECT_EQ(label("0123456789abcdef"), "012345678");
-  EXPECT_EQ(label("abcdef012"), "abcdef012");
-  EXPECT_EQ(label("fourteen-chars"), "fourteen-chars");
-  EXPECT_EQ(label("fifteen-letters"), "fifteen-lette…");
-}
-
-TEST(TrendPlotTest, ASingleCommitStandsInTheMiddle) {
-  const std::string svg = trend_svg({{"c1", "e", "s", {}, {{"x", {5.0, "1", true}}}}}, {"x"});
-  EXPECT_THAT(svg, HasSubstr("<circle cx=\"456.0\""));  // 96 and half of 720
 }
 
 }  // namespace

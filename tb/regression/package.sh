@@ -43,7 +43,8 @@ end=$(date +%s%N)
 times >"$out/times.end"
 [ "$status" = 1 ] || fail "a slower firmware: status $status: $(cat "$out/slow.log")"
 grep -q 'FAILED  cpu.cycles' "$out/slow.log" || fail "no cpu.cycles: $(cat "$out/slow.log")"
-grep -q '^blamed: ' "$out/slow.log" || fail "nothing blamed: $(cat "$out/slow.log")"
+grep -q '^blamed: [a-z_]* (main.c:[0-9]*) ' "$out/slow.log" || fail "no function and line: $(cat "$out/slow.log")"
+grep -q '^- \*\*who\*\*: `[a-z_]* (main.c:' "$BUILD/timing.md" || fail "no five lines: $(cat "$BUILD/timing.md")"
 ms=$(($(spent "$out/times.end") - $(spent "$out/times.begin")))
 echo "from package to five verdicts: $ms ms of processor time, $(((end - begin) / 1000000)) ms in all"
 [ "$ms" -gt 0 ] && [ "$ms" -le 60000 ] || fail "from package to verdicts: $ms ms of processor time, more than a minute or none"

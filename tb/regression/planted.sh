@@ -43,7 +43,7 @@ blamed() {
 
 # expects NAME: the run NAME becomes the baseline NAME-before.yaml
 expects() {
-  "$fovea" bless "$out/$1" --against "$out/$1-before.yaml" --why 'before the plant' >"$out/$1-before.log" 2>&1 ||
+  "$fovea" bless "$out/$1" --against "$out/$1-before.yaml" --tolerance 0 --why 'before the plant' >"$out/$1-before.log" 2>&1 ||
     { fail "$1: no baseline: $(cat "$out/$1-before.log")"; return 1; }
 }
 

@@ -17,6 +17,7 @@ struct RunMaker {
   std::string version = "0.1.0", commit = "aaaaaaaaaaaa", experiment = "tiny";
   bool modified = false, complete = true;
   std::string elf = "11";                         ///< hash of the program
+  std::string command, input, words;              ///< of exec and replay: `words` are further members of config.json
   std::map<std::string, std::string> parameters = {{"run.frames", "2"}, {"ddr.clock", "243MHz"}};
   /// name -> (value, unit)
   std::map<std::string, std::pair<std::string, std::string>> figures;
@@ -31,8 +32,13 @@ struct RunMaker {
   std::filesystem::path write(const test::TempDir& dir, const std::string& name) const {
     std::string config = fmt::format(
         "{{\n  \"format\": \"fovea run 1\",\n  \"version\": \"{}\",\n  \"commit\": \"{}\",\n  \"modified\": {},\n"
-        "  \"experiment\": \"{}\",\n  \"sha256\": {{\"firmware.elf\": \"{}\"}},\n  \"params\": {{",
-        version, commit, modified, experiment, elf);
+        "  \"experiment\": \"{}\",\n{}  \"sha256\": {{\"{}\": \"{}\"}},\n  \"params\": {{",
+        version, commit, modified, experiment,
+        command.empty() ? "" : fmt::format("  \"command\": \"{}\", \"input\": \"{}\", {}\n", command, input, words),
+        command == "exec"     ? "program"
+        : command == "replay" ? "trace"
+                              : "firmware.elf",
+        elf);
     const char* separator = "\n";
     for (const auto& [key, value] : parameters) {
       config += fmt::format("{}    \"{}\": {{\"value\": \"{}\", \"default\": \"{}\", \"tag\": \"choice\"}}",

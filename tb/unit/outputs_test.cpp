@@ -155,6 +155,13 @@ TEST(ConfigJsonTest, ShowsValueOriginAndTag) {
   EXPECT_EQ(j["params"]["ddr.depth"]["belief"],
             json::parse(R"({"low": "3", "high": "8", "reason": "as others"})"));
   EXPECT_TRUE(j["params"]["ddr.tRCD"]["belief"].is_null());
+  EXPECT_FALSE(j.contains("command")) << "the experiment says what ran";
+  const auto program = json::parse(config_json(
+      params, experiment, {.command = "exec", .input = "a.elf", .arguments = {"1"}, .options = {"--board"}}));
+  EXPECT_EQ(program["command"], "exec");
+  EXPECT_EQ(program["input"], "a.elf");
+  EXPECT_EQ(program["arguments"], json::parse(R"(["1"])"));
+  EXPECT_EQ(program["options"], json::parse(R"(["--board"])"));
 }
 
 TEST(FramesCsvTest, UnknownTimesAreEmptyCells) {

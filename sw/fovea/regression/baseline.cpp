@@ -4,7 +4,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -36,9 +35,11 @@ class BaselineReader {
       fail(format ? format.Mark().line : 0,
            fmt::format("not a baseline that this program reads; allowed: 'format: {}'",
                        kBaselineFormat));
-    known(root, {"format", "experiment", "simulator", "settings", "reference", "metrics", "history"},
+    known(root,
+          {"format", "experiment", "program", "trace", "arguments", "options", "simulator", "settings", "reference",
+           "metrics", "history"},
           "the baseline");
-    out_.experiment = scalar(root, "experiment", root).Scalar();
+    read_subject(root);
     const YAML::Node simulator = root["simulator"];
     if (!simulator || !simulator.IsMap())
       fail(root.Mark().line, "'simulator' is missing; allowed: {version: ..., commit: ...}");
@@ -68,6 +69,34 @@ class BaselineReader {
   }
 
  private:
+  void read_subject(const YAML::Node& root) {
+    bool found = false;
+    for (const ResultKind kind : {ResultKind::kRun, ResultKind::kExec, ResultKind::kReplay}) {
+      const std::string key(subject_key(kind));
+      if (!root[key]) continue;
+      if (found) fail(root[key].Mark().line, "one of 'experiment', 'program' and 'trace' is allowed");
+      found = true;
+      out_.subject = {kind, scalar(root, key.c_str(), root).Scalar()};
+    }
+    if (!found) fail(root.Mark().line, "'experiment' is missing; of a result of exec 'program', of replay 'trace'");
+    out_.subject.arguments = words(root, "arguments", out_.subject.kind == ResultKind::kExec);
+    out_.subject.options = words(root, "options", out_.subject.kind != ResultKind::kRun);
+  }
+
+  std::vector<std::string> words(const YAML::Node& root, const char* key, bool allowed) {
+    const YAML::Node list = root[key];
+    if (!list) return {};
+    if (!allowed)
+      fail(list.Mark().line, fmt::format("'{}' does not go with '{}'", key, subject_key(out_.subject.kind)));
+    std::vector<std::string> out;
+    if (!list.IsSequence()) fail(list.Mark().line, fmt::format("'{}' is not a list of words", key));
+    for (const auto& word : list) {
+      if (!word.IsScalar()) fail(word.Mark().line, fmt::format("'{}' is not a list of words", key));
+      out.push_back(word.Scalar());
+    }
+    return out;
+  }
+
   [[noreturn]] void fail(int line, const std::string& what) const {
     throw UserError(fmt::format("{}:{}: {}", app::one_line(out_.file.string()),
                                 std::max(line, 0) + 1, what));
@@ -105,7 +134,24 @@ class BaselineReader {
   void check_history(const YAML::Node& root) {
     const YAML::Node history = root["history"];
     if (!history) return;
-    if (!history.IsSequence()) fail(history.Mark().line, "'history' is not a list");
+    out_.history.there = true;
+    out_.history.line = history.Mark().line + 1;
+    if (history.IsSequence() && history.Style() != YAML::EmitterStyle::Flow) {
+      out_.history.indent = static_cast<std::size_t>(history.Mark().column);
+    } else if (history.IsSequence()) {
+      out_.history.at = static_cast<std::size_t>(history.Mark().pos);
+      out_.history.size = out_.text.find(']', out_.history.at) + 1 - out_.history.at;
+      out_.history.brackets = history.size() != 0;
+    } else if (history.IsNull()) {
+      const auto at = static_cast<std::size_t>(history.Mark().pos);
+      for (const std::string_view word : {"null", "Null", "NULL", "~"})
+        if (at < out_.text.size() && out_.text.compare(at, word.size(), word) == 0) {
+          out_.history.at = at;
+          out_.history.size = word.size();
+        }
+    } else {
+      fail(history.Mark().line, "'history' is not a list");
+    }
     for (const auto& item : root)
       if (item.first.Mark().line > history.Mark().line)
         fail(item.first.Mark().line, "'history' is the last part of a baseline; new entries are "
@@ -187,28 +233,6 @@ class BaselineReader {
   Baseline out_;
 };
 
-/// Figures of a first baseline, if the run has them, with the direction that is worse.
-struct Headline {
-  const char* name;
-  const char* worse;
-};
-constexpr std::array<Headline, 16> kHeadlines = {{{"frame.rate", "lower"},
-                                                  {"frame.dropped", "higher"},
-                                                  {"frame.repeated", "higher"},
-                                                  {"frame.remap_rate", "lower"},
-                                                  {"frame.remap_time.mean", "higher"},
-                                                  {"frame.remap_time.max", "higher"},
-                                                  {"frame.latency.mean", "higher"},
-                                                  {"frame.latency.max", "higher"},
-                                                  {"startup.lut_time", "higher"},
-                                                  {"capture.overflows", "higher"},
-                                                  {"display.underflows", "higher"},
-                                                  {"cpu.instructions", "both"},
-                                                  {"cpu.cycles", "higher"},
-                                                  {"cpu.spare", "lower"},
-                                                  {"ddr.bus_bytes", "higher"},
-                                                  {"ddr.row_conflicts", "higher"}}};
-
 }  // namespace
 
 std::string_view kind_name(Kind kind) {
@@ -233,24 +257,10 @@ std::string yaml_text(const std::string& text) {
   return emitter.c_str();
 }
 
-std::string new_baseline(const RunFigures& run, const std::string& reference,
-                         const std::string& why) {
-  std::string out = fmt::format(
-      "# What the figures of a run should be: 'fovea check DIR --against THIS'. Values of the kind\n"
-      "# exact come from a run and are replaced by 'fovea bless'; see 'fovea check --help'.\n"
-      "format: {}\nexperiment: {}\nsimulator:\n  version: {}\n  commit: {}\n",
-      kBaselineFormat, run.experiment, run.version, commit_text(run));
-  if (const auto frames = run.parameters.find("run.frames"); frames != run.parameters.end())
-    out += fmt::format("settings:\n  run.frames: {}\n", frames->second.value);
-  out += fmt::format("reference: {}\nmetrics:\n", reference);
-  for (const auto& [name, worse] : kHeadlines) {
-    const Metric* const m = run.metric(name);
-    if (!m) continue;
-    out += fmt::format("  {}:\n    value: {}\n    unit: {}\n    worse: {}\n    kind: exact\n", name,
-                       m->value ? exact_text(*m->value, m->whole) : "null", m->unit, worse);
-  }
-  out += fmt::format("history:\n  - commit: {}\n    why: {}\n", commit_text(run), yaml_text(why));
-  return out;
+std::string yaml_scalar(const std::string& text) {
+  YAML::Emitter emitter;
+  emitter << text;
+  return emitter.c_str();
 }
 
 }  // namespace fovea::regression

@@ -35,12 +35,20 @@ struct Expectation {
 
 struct Baseline {
   std::filesystem::path file;
-  std::string text;  ///< of the whole file
-  std::string experiment, version, commit;
+  std::string text;  ///< of the whole file; empty: it is no file, but another run
+  Subject subject;   ///< what a run must be of
+  std::string version, commit;
   std::size_t version_at = 0, commit_at = 0;  ///< of these texts in the file
   std::map<std::string, std::string> settings;  ///< parameters that a run must have
   std::filesystem::path reference;            ///< folder of the reference; empty: none
   std::vector<Expectation> metrics;           ///< in the order of the file
+  /// How the file writes its history: a list of lines, `[]`, or none.
+  struct History {
+    bool there = false, brackets = false;  ///< brackets: with entries in them
+    std::size_t indent = 2;                ///< of its lines
+    std::size_t at = 0, size = 0;          ///< of `[]` or `null` in the file
+    int line = 0;
+  } history;
 };
 
 inline constexpr std::string_view kBaselineFormat = "fovea baseline 1";
@@ -50,11 +58,9 @@ Baseline read_baseline(const std::filesystem::path& file);
 /// The same from a text that may become the contents of `file`.
 Baseline parse_baseline(const std::filesystem::path& file, std::string text);
 
-/// A first baseline for a run: headline figures, exact and without tolerance.
-std::string new_baseline(const RunFigures& run, const std::string& reference, const std::string& why);
-
-/// A text as a YAML scalar in double quotes.
+/// A text as a YAML scalar in double quotes; as one with quotes only where it needs them.
 std::string yaml_text(const std::string& text);
+std::string yaml_scalar(const std::string& text);
 
 /// The simulator's commit for a baseline; that of a modified source ends in "-modified".
 std::string commit_text(const RunFigures& run);

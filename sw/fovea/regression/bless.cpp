@@ -33,6 +33,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 std::string blessed_text(const RunFigures& run, const Baseline& baseline, const std::string& why) {
   // Replacements by position, from the end of the file on, so that earlier places stay.
   std::map<std::size_t, std::string, std::greater<>> replacements;
+  const Baseline::History& history = baseline.history;
   std::string changes;
   for (const auto& e : baseline.metrics) {
     const Metric* const m = run.metric(e.name);
@@ -48,20 +49,26 @@ std::string blessed_text(const RunFigures& run, const Baseline& baseline, const 
     const std::string now = m->value ? exact_text(*m->value, m->whole) : "null";
     const std::string before = baseline.text.substr(e.value_at, scalar_size(baseline.text, e.value_at));
     replacements[e.value_at] = now;
-    changes += fmt::format("      {}: {} -> {}\n", e.name, before, now);
+    changes += fmt::format("{:{}}{}: {} -> {}\n", "", history.indent + 4, e.name, before, now);
   }
   const bool moved = !replacements.empty();
   if (!moved && baseline.version == run.version && baseline.commit == commit_text(run)) return baseline.text;
+  if (moved && history.brackets)
+    throw UserError(
+        fmt::format("{}:{}: 'history' has entries in brackets; allowed: a list of lines that begin with '- ', "
+                    "or []",
+                    app::one_line(baseline.file.string()), history.line));
   replacements[baseline.version_at] = run.version;
   replacements[baseline.commit_at] = commit_text(run);
   std::string out = baseline.text;
+  // The history is the last part of the file, so that nothing before it moves.
+  if (moved && history.size) out.erase(history.at, history.size);
   for (const auto& [at, text] : replacements) out.replace(at, scalar_size(out, at), text);
   if (!moved) return out;  // equal figures of another simulator: no history
   if (!out.ends_with('\n')) out += '\n';
-  const bool history = baseline.text.starts_with("history:") ||
-                       baseline.text.find("\nhistory:") != std::string::npos;
-  if (!history) out += "history:\n";
-  return out + fmt::format("  - commit: {}\n    why: {}\n    changes: |\n{}", commit_text(run),
+  if (!history.there) out += "history:\n";
+  const std::string indent(history.indent, ' ');
+  return out + fmt::format("{0}- commit: {1}\n{0}  why: {2}\n{0}  changes: |\n{3}", indent, commit_text(run),
                            yaml_text(why), changes);
 }
 

@@ -21,6 +21,8 @@ std::string expected_text(const Expectation& e, const Metric& got) {
   return what + figure_text(m);
 }
 
+}  // namespace
+
 std::string allowed_text(const Expectation& e) {
   const bool none = e.tolerance.allowed(e.value.value_or(0)) == 0;
   std::string out = none ? "no deviation" : e.tolerance.text();
@@ -28,6 +30,8 @@ std::string allowed_text(const Expectation& e) {
   if (e.worse == Worse::kLower) out += none ? " downwards" : " lower";
   return "allowed: " + out;
 }
+
+namespace {
 
 /// What is to be done for function and line; the command is the one that made the run.
 std::string advice_text(const RunFigures& run, const Attribution& before, const Attribution& after) {
@@ -48,10 +52,9 @@ std::string advice_text(const RunFigures& run, const Attribution& before, const 
 
 void check_circumstances(const RunFigures& run, const Baseline& baseline) {
   const std::string file = app::one_line(baseline.file.string());
-  if (run.experiment != baseline.experiment)
-    throw UserError(fmt::format("'{}' is a run of the experiment '{}', {} is for '{}'",
-                                app::one_line(run.folder.string()), app::one_line(run.experiment),
-                                file, baseline.experiment));
+  if (run.subject != baseline.subject)
+    throw UserError(fmt::format("'{}' is of {}, {} is for {}", app::one_line(run.folder.string()), run.subject.text(),
+                                file, baseline.subject.text()));
   for (const auto& [key, value] : baseline.settings) {
     const auto found = run.parameters.find(key);
     if (found == run.parameters.end())
@@ -67,6 +70,23 @@ void check_circumstances(const RunFigures& run, const Baseline& baseline) {
 std::size_t CheckResult::failures() const {
   return static_cast<std::size_t>(std::count_if(
       findings.begin(), findings.end(), [](const Finding& f) { return f.verdict == Verdict::kFail; }));
+}
+
+double Finding::size() const {
+  if (!got || !got->value || !expected->value || got->unit != expected->unit || *expected->value == 0)
+    return verdict == Verdict::kPass ? 0 : INFINITY;
+  return std::abs((*got->value - *expected->value) / *expected->value);
+}
+
+std::vector<const Finding*> findings_by_size(const CheckResult& result) {
+  std::vector<const Finding*> out;
+  for (const Finding& f : result.findings) out.push_back(&f);
+  // What passes stays in the order of the baseline.
+  std::stable_sort(out.begin(), out.end(), [](const Finding* a, const Finding* b) {
+    if (a->verdict != b->verdict) return a->verdict > b->verdict;
+    return a->verdict != Verdict::kPass && a->size() > b->size();
+  });
+  return out;
 }
 
 Finding judge(const Expectation& e, const RunFigures& run) {
@@ -127,11 +147,13 @@ CheckResult check_run(const RunFigures& run, const Baseline& baseline, bool acro
   const RunFigures reference = read_reference(baseline);
   out.settings = differences_of_settings(reference, run);
   if (out.failures() == 0) return out;
-  const Attribution before = attribution_of(reference, true), after = attribution_of(run, true);
+  Attribution before = attribution_of(reference, true), after = attribution_of(run, true);
+  level_clocks(reference, run, before, after);
   if (before.rows.empty() || after.rows.empty()) return out;
   out.difference = difference_of(before, after, circumstances_of(reference, run));
-  out.blame = blame_text(*out.difference,
-                         blame_of(*out.difference, true));
+  const Blame blame = blame_of(*out.difference, true);
+  out.blame = blame_text(*out.difference, blame);
+  if (blame.function) out.blamed = place_text(*blame.function, blame.line);
   out.advice = advice_text(run, before, after);
   return out;
 }
@@ -139,13 +161,14 @@ CheckResult check_run(const RunFigures& run, const Baseline& baseline, bool acro
 std::string check_text(const CheckResult& result, const RunFigures& run, const Baseline& baseline,
                        bool all) {
   const std::size_t failures = result.failures();
-  std::string out = fmt::format("{}: {} against {}: ", failures ? "FAILED" : "passed",
-                                run.experiment, baseline.file.string());
+  std::string out =
+      fmt::format("{}: {} against {}: ", failures ? "FAILED" : "passed", run.subject.label(), baseline.file.string());
   out += failures ? fmt::format("{} of {} figures\n", failures, result.findings.size())
                   : fmt::format("{} figures\n", result.findings.size());
   std::size_t width = 0, better = 0;
   for (const auto& f : result.findings) width = std::max(width, f.expected->name.size());
-  for (const auto& f : result.findings) {
+  for (const Finding* finding : findings_by_size(result)) {
+    const Finding& f = *finding;
     better += f.verdict == Verdict::kBetter;
     if (f.verdict == Verdict::kPass && !all) continue;
     const char* const word = f.verdict == Verdict::kFail     ? "FAILED"
@@ -156,7 +179,7 @@ std::string check_text(const CheckResult& result, const RunFigures& run, const B
       out += fmt::format(" [{}]", app::one_line(f.expected->reason));
     out += "\n";
   }
-  if (better && !failures)
+  if (better && !failures && !baseline.text.empty())
     out += fmt::format("  'fovea bless {} --against {} --why TEXT' keeps what became better\n",
                        run.folder.string(), baseline.file.string());
   if (!result.settings.empty() && (failures || run.version != baseline.version ||

@@ -16,6 +16,9 @@ struct Finding {
   const Metric* got = nullptr;  ///< nullptr: the run lacks the figure
   Verdict verdict = Verdict::kPass;
   std::string words;            ///< value, expected value, what is allowed
+
+  /// The deviation as a share of what was expected; infinite where there is no such share.
+  double size() const;
 };
 
 struct CheckResult {
@@ -23,6 +26,7 @@ struct CheckResult {
   std::vector<std::string> settings;   ///< what differs between the reference and the run
   std::optional<Difference> difference;
   std::string blame;                   ///< one sentence; empty if nothing failed or nothing is known
+  std::string blamed;                  ///< the place that the sentence names: function, file and line
   std::string advice;                  ///< how to get a blame by function and line; empty: it is one
 
   std::size_t failures() const;
@@ -41,6 +45,13 @@ void check_circumstances(const RunFigures& run, const Baseline& baseline);
 /// comes from another simulator (unless `across_versions`), or the reference cannot be read
 CheckResult check_run(const RunFigures& run, const Baseline& baseline, bool across_versions);
 
+/// Failures, the largest first; then what became better, the same; then what passes.
+std::vector<const Finding*> findings_by_size(const CheckResult& result);
+/// "allowed: 1 % higher".
+std::string allowed_text(const Expectation& expected);
+
+/// Five lines for a merge request: figure, before, after, who, why.
+std::string markdown_text(const CheckResult& result, const RunFigures& run, const Baseline& baseline);
 /// The report for people. `all` lists the figures that pass, too.
 std::string check_text(const CheckResult& result, const RunFigures& run, const Baseline& baseline,
                        bool all);

@@ -4,7 +4,6 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -121,12 +120,12 @@ Circumstances circumstances_of(const RunFigures& before, const RunFigures& after
   return out;
 }
 
-std::vector<std::string> differences_of_settings(const RunFigures& before, const RunFigures& after) {
-  std::vector<std::string> out;
+SettingChanges setting_changes(const RunFigures& before, const RunFigures& after) {
+  SettingChanges out;
   if (!same_simulator(before, after))
-    out.push_back(fmt::format("simulator: {} -> {}", before.simulator(), after.simulator()));
-  if (before.experiment != after.experiment)
-    out.push_back(fmt::format("experiment: {} -> {}", before.experiment, after.experiment));
+    out.both.push_back(fmt::format("simulator: {} -> {}", before.simulator(), after.simulator()));
+  if (before.subject != after.subject)
+    out.both.push_back(fmt::format("{} -> {}", before.subject.text(), after.subject.text()));
   std::set<std::string> keys, inputs;
   for (const auto* run : {&before, &after}) {
     for (const auto& [key, p] : run->parameters) keys.insert(key);
@@ -138,25 +137,39 @@ std::vector<std::string> differences_of_settings(const RunFigures& before, const
     if ((a != before.parameters.end() && a->second.path) || (b != after.parameters.end() && b->second.path))
       continue;
     if (a == before.parameters.end())
-      out.push_back(fmt::format("parameter {} is new: {}", key, app::one_line(b->second.value, 60)));
+      out.one_only.push_back(fmt::format("parameter {} is new: {}", key, app::one_line(b->second.value, 60)));
     else if (b == after.parameters.end())
-      out.push_back(fmt::format("parameter {} is gone: {}", key, app::one_line(a->second.value, 60)));
+      out.one_only.push_back(fmt::format("parameter {} is gone: {}", key, app::one_line(a->second.value, 60)));
     else if (a->second.value != b->second.value)
-      out.push_back(fmt::format("{}: {} -> {}{}", key, app::one_line(a->second.value, 60),
-                                app::one_line(b->second.value, 60),
-                                a->second.default_value != b->second.default_value
-                                    ? " (the default changed)"
-                                    : ""));
+      out.both.push_back(
+          fmt::format("{}: {} -> {}{}", key, app::one_line(a->second.value, 60), app::one_line(b->second.value, 60),
+                      a->second.default_value != b->second.default_value ? " (the default changed)" : ""));
   }
   for (const auto& key : inputs) {
     const auto a = before.hashes.find(key), b = after.hashes.find(key);
     if (a == before.hashes.end() || b == after.hashes.end())
-      out.push_back(fmt::format("input {}: only one run read it", key));
+      out.both.push_back(fmt::format("input {}: only one run read it", key));
     else if (a->second != b->second)
-      out.push_back(fmt::format("input {}: another file (SHA-256 {:.12} -> {:.12})", key, a->second,
-                                b->second));
+      out.both.push_back(fmt::format("input {}: another file (SHA-256 {:.12} -> {:.12})", key, a->second, b->second));
   }
   return out;
+}
+
+std::vector<std::string> differences_of_settings(const RunFigures& before, const RunFigures& after) {
+  const SettingChanges changes = setting_changes(before, after);
+  std::vector<std::string> out = changes.both;
+  out.insert(out.end(), changes.one_only.begin(), changes.one_only.end());
+  return out;
+}
+
+void level_clocks(const RunFigures& before, const RunFigures& after, Attribution& a, Attribution& b) {
+  const auto value = [](const RunFigures& run, const char* key) {
+    const auto found = run.parameters.find(key);
+    return found == run.parameters.end() ? std::string() : found->second.value;
+  };
+  for (const char* key : {"clocks.preset", "clocks.arm", "clocks.ddr"})
+    if (value(before, key) != value(after, key)) return;
+  if (!before.has_frames() && !after.has_frames() && before.subject.kind == after.subject.kind) b.seconds = a.seconds;
 }
 
 Comparison compare_runs(const RunFigures& before, const RunFigures& after,
@@ -172,9 +185,10 @@ Comparison compare_runs(const RunFigures& before, const RunFigures& after,
   for (const auto& name : names)
     if (const auto change = change_of_metric(name, before.metric(name), after.metric(name), tolerance))
       out.changes.push_back(*change);
-  out.settings = differences_of_settings(before, after);
+  out.settings = setting_changes(before, after);
   const bool profile = has_profile(before) && has_profile(after);
-  const Attribution a = attribution_of(before, profile), b = attribution_of(after, profile);
+  Attribution a = attribution_of(before, profile), b = attribution_of(after, profile);
+  level_clocks(before, after, a, b);
   if (!a.rows.empty() && !b.rows.empty())
     out.difference = difference_of(a, b, circumstances_of(before, after));
   return out;
@@ -232,43 +246,48 @@ std::string difference_text(const Difference& d, std::size_t rows) {
   return out;
 }
 
-std::string comparison_text(const Comparison& c, const Tolerance& tolerance, bool all) {
-  std::string out = fmt::format("A  {}: {}, fovea {}\nB  {}: {}, fovea {}\n",
-                                c.before->folder.string(), c.before->experiment,
-                                c.before->simulator(), c.after->folder.string(),
-                                c.after->experiment, c.after->simulator());
-  if (!c.settings.empty()) {
-    out += "what was different:\n";
-    for (const auto& line : c.settings) out += "  " + line + "\n";
+std::string settings_text(const SettingChanges& settings, bool all) {
+  // A few are news of another version of Fovea; many are those of another command.
+  constexpr std::size_t kFew = 5;
+  const bool listed = all || settings.one_only.size() <= kFew;
+  if (settings.both.empty() && settings.one_only.empty()) return "";
+  std::string out = "what was different:\n";
+  for (const auto& line : settings.both) out += "  " + line + "\n";
+  if (!listed)
+    out += fmt::format("  {} parameters exist in one of the two only; --all lists them\n", settings.one_only.size());
+  else
+    for (const auto& line : settings.one_only) out += "  " + line + "\n";
+  return out;
+}
+
+/// The figures that differ, those that change the largest share of a frame first.
+std::string figures_text(const Comparison& c, bool all) {
+  constexpr std::size_t kShown = 30;
+  const std::vector<SharedChange> sorted = by_share_of_time(c);
+  std::vector<std::vector<std::string>> table = {
+      {"figure", "A", "B", "change", "", c.before->has_frames() ? "of a frame" : "of the window"}};
+  for (std::size_t i = 0; i < sorted.size() && (all || i < kShown); ++i) {
+    const MetricChange& m = *sorted[i].change;
+    table.push_back({m.name, figure_or_dash(m.before), figure_or_dash(m.after), change_text(m),
+                     percent_text(m.relative()), percent_text(sorted[i].share)});
   }
+  std::string out = columns_text(table, 1);
+  if (!all && sorted.size() > kShown)
+    out += fmt::format("  {} more figures; --all lists them\n", sorted.size() - kShown);
+  return out;
+}
+
+std::string comparison_text(const Comparison& c, const Tolerance& tolerance, bool all) {
+  std::string out =
+      fmt::format("A  {}: {}, fovea {}\nB  {}: {}, fovea {}\n", c.before->folder.string(), c.before->subject.text(),
+                  c.before->simulator(), c.after->folder.string(), c.after->subject.text(), c.after->simulator());
+  out += settings_text(c.settings, all);
   const std::string within =
       tolerance.allowed(1) == 0 ? "" : fmt::format(" (tolerance {})", tolerance.text());
-  if (c.changes.empty()) {
+  if (c.changes.empty())
     out += fmt::format("equal: all {} figures{}\n", c.compared, within);
-  } else {
-    out += fmt::format("different: {} of {} figures{}\n", c.changes.size(), c.compared, within);
-    // The figures that people ask for first, then the largest changes.
-    static constexpr std::array kFirst{"frame.", "startup.", "capture.", "display.", "cpu.cycles",
-                                       "cpu.instructions", "cpu.issue", "cpu.spare", "cpu.idle", "ddr.utilisation"};
-    const auto rank = [](const MetricChange& m) {
-      for (std::size_t i = 0; i < kFirst.size(); ++i)
-        if (m.name.starts_with(kFirst[i])) return static_cast<double>(i) - 100;
-      return -std::min(50.0, std::abs(m.relative().value_or(50)));
-    };
-    std::vector<MetricChange> sorted = c.changes;
-    std::stable_sort(sorted.begin(), sorted.end(), [&](const auto& a, const auto& b) {
-      return rank(a) < rank(b);
-    });
-    constexpr std::size_t kShown = 30;
-    std::vector<std::vector<std::string>> table = {{"figure", "A", "B", "change", ""}};
-    for (std::size_t i = 0; i < sorted.size() && (all || i < kShown); ++i)
-      table.push_back({sorted[i].name, figure_or_dash(sorted[i].before),
-                       figure_or_dash(sorted[i].after), change_text(sorted[i]),
-                       percent_text(sorted[i].relative())});
-    out += columns_text(table, 1);
-    if (!all && sorted.size() > kShown)
-      out += fmt::format("  {} more figures; --all lists them\n", sorted.size() - kShown);
-  }
+  else
+    out += fmt::format("different: {} of {} figures{}\n", c.changes.size(), c.compared, within) + figures_text(c, all);
   if (c.difference && !c.difference->none()) {
     out += difference_text(*c.difference, all ? SIZE_MAX : 12);
     const bool slower = c.difference->busy.change() >= 0;

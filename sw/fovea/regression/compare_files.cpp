@@ -73,7 +73,9 @@ std::string comparison_csv(const Comparison& c) {
 }
 
 std::string comparison_json(const Comparison& c) {
-  Json out = {{"equal", c.changes.empty()}, {"compared", c.compared}, {"settings", c.settings}};
+  Json out = {{"equal", c.changes.empty()},
+              {"compared", c.compared},
+              {"settings", differences_of_settings(*c.before, *c.after)}};
   Json& figures = out["figures"] = Json::array();
   for (const auto& m : c.changes)
     figures.push_back({{"name", m.name},

@@ -23,7 +23,7 @@ std::string xml_text(std::string_view text) {
 
 std::string junit_xml(const CheckResult& result, const RunFigures& run, const Baseline& baseline,
                       const std::string& when) {
-  const std::string suite = "fovea." + xml_text(run.experiment);
+  const std::string suite = "fovea." + xml_text(run.subject.label());
   // Elements in the order, and attributes, that the schemas of Ant's JUnit task, Maven Surefire and
   // Jenkins' xUnit plugin demand; the time of a comparison is none that anybody measures.
   std::string out = fmt::format(

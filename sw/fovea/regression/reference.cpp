@@ -43,7 +43,7 @@ RunFigures read_reference(const Baseline& baseline) {
     run.modified = true;
     run.commit.resize(run.commit.size() - kModified.size());
   }
-  run.experiment = baseline.experiment;
+  run.subject = baseline.subject;
   const TableFile figures(run.folder / "figures.csv", {"name", "value", "unit"});
   for (std::size_t i = 0; i < figures.rows(); ++i) {
     const std::string& text = figures.text(i, "value");

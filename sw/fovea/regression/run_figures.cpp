@@ -34,14 +34,31 @@ std::string text_of(const json& object, const char* name) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+std::vector<std::string> texts_of(const json& object, const char* name) {
+  std::vector<std::string> out;
+  for (const auto& word : object.value(name, json::array()))
+    if (word.is_string()) out.push_back(word.get<std::string>());
+  return out;
+}
+
+/// Results of `exec` and `replay` name their command; those of versions before tell by the input's hash.
+Subject subject_of(const json& config, const std::map<std::string, std::string>& hashes) {
+  const std::string command = text_of(config, "command");
+  if (command == command_of(ResultKind::kExec) || hashes.contains("program"))
+    return {ResultKind::kExec, text_of(config, "input"), texts_of(config, "arguments"), texts_of(config, "options")};
+  if (command == command_of(ResultKind::kReplay) || hashes.contains("trace"))
+    return {ResultKind::kReplay, text_of(config, "input"), {}, texts_of(config, "options")};
+  return {ResultKind::kRun, text_of(config, "experiment")};
+}
+
 void read_config(const json& config, RunFigures& run) {
   run.version = text_of(config, "version");
   run.commit = text_of(config, "commit");
   run.modified = config.value("modified", json(false)) == true;
-  run.experiment = text_of(config, "experiment");
   const json hashes = config.value("sha256", json::object());
   for (const auto& [name, hash] : hashes.items())
     run.hashes[name] = hash.is_string() ? hash.get<std::string>() : "";
+  run.subject = subject_of(config, run.hashes);
   const json params = config.value("params", json::object());
   for (const auto& [key, p] : params.items()) {
     if (!p.is_object()) continue;
@@ -68,6 +85,16 @@ std::string RunFigures::simulator() const {
   return fmt::format("{} (commit {}{})", version, commit, modified ? ", modified" : "");
 }
 
+bool RunFigures::has_frames() const {
+  return subject.kind != ResultKind::kExec && (metric("frame.rate") || metric("frame.remap_time.mean"));
+}
+
+std::string RunFigures::input_hash() const {
+  for (const char* key : {"program", "trace", "firmware.elf"})
+    if (const auto found = hashes.find(key); found != hashes.end() && !found->second.empty()) return found->second;
+  return "";
+}
+
 const Metric* RunFigures::metric(const std::string& name) const {
   const auto found = metrics.find(name);
   return found == metrics.end() ? nullptr : &found->second;
@@ -82,13 +109,15 @@ RunFigures read_run(const fs::path& folder) {
   const std::string name = app::one_line(folder.string());
   std::error_code error;
   if (!fs::is_directory(folder, error))
-    throw UserError(fmt::format("'{}' is not a folder; allowed: a folder of results, as 'fovea run' "
-                                "writes it",
-                                name));
+    throw UserError(
+        fmt::format("'{}' is not a folder; allowed: a folder of results, as 'fovea run', "
+                    "'exec' and 'replay' write it",
+                    name));
   if (!app::is_run_folder(folder))
-    throw UserError(fmt::format("'{}' is not a folder of results: it has no config.json of Fovea's; "
-                                "allowed: a folder that 'fovea run' wrote",
-                                name));
+    throw UserError(
+        fmt::format("'{}' is not a folder of results: it has no config.json of Fovea's; "
+                    "allowed: a folder that 'fovea run', 'exec' or 'replay' wrote",
+                    name));
   if (!fs::exists(folder / "stats.json", error))
     throw UserError(fmt::format("'{}' has no stats.json: its run did not end; allowed: complete "
                                 "results",

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "sw/fovea/regression/subject.h"
+
 namespace fovea::regression {
 
 /// A figure of stats.json.
@@ -27,7 +29,7 @@ struct RunFigures {
   std::filesystem::path folder;
   std::string version, commit;
   bool modified = false;  ///< the simulator's source differed from the commit
-  std::string experiment;
+  Subject subject;        ///< of results that do not name it, with an empty name
   std::map<std::string, Metric> metrics;
   std::map<std::string, Parameter> parameters;
   std::map<std::string, std::string> hashes;  ///< SHA-256 of the inputs, by key
@@ -36,6 +38,10 @@ struct RunFigures {
 
   /// Version and commit of the simulator, as `fovea version` prints them.
   std::string simulator() const;
+  /// True if the window is one of frames, which begins with the first corrected one; false: it begins at power-up.
+  bool has_frames() const;
+  /// SHA-256 of what ran, the program or the trace; empty: it is not known.
+  std::string input_hash() const;
   /// The figure, or nullptr.
   const Metric* metric(const std::string& name) const;
   /// Value of a figure; 0 if it is missing or has none.

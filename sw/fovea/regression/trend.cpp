@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
@@ -57,7 +58,11 @@ class TrendFile::Statement {
 };
 
 TrendFile::TrendFile(const std::filesystem::path& file) : file_(file) {
-  const bool failed = sqlite3_open(file.c_str(), &db_) != SQLITE_OK;
+  if (file.empty()) throw UserError("--database '': a file name is needed");
+  // SQLite has names of its own, ":memory:" and "file:...?mode="; none of them begins with a slash.
+  std::error_code error;
+  const std::filesystem::path place = std::filesystem::absolute(file, error);
+  const bool failed = error || sqlite3_open(place.c_str(), &db_) != SQLITE_OK;
   try {
     if (failed) fail(sqlite3_errmsg(db_));
     sqlite3_busy_timeout(db_, kBusyMilliseconds);
@@ -74,7 +79,9 @@ TrendFile::TrendFile(const std::filesystem::path& file) : file_(file) {
     execute(
         "CREATE TABLE IF NOT EXISTS runs (number INTEGER PRIMARY KEY, commit_name TEXT NOT NULL, "
         "experiment TEXT NOT NULL, simulator TEXT NOT NULL, host_instructions REAL, "
-        "figures TEXT NOT NULL, units TEXT NOT NULL, UNIQUE (commit_name, experiment))");
+        "figures TEXT NOT NULL, units TEXT NOT NULL, program TEXT NOT NULL DEFAULT '', "
+        "folder TEXT NOT NULL DEFAULT '', UNIQUE (commit_name, experiment))");
+    add_columns();
   } catch (...) {
     sqlite3_close(db_);
     throw;
@@ -94,35 +101,72 @@ void TrendFile::execute(const char* sql) {
   }
 }
 
-void TrendFile::add(const TrendLine& line) {
+void TrendFile::add(const TrendLine& line, bool replace) {
   json figures = json::object(), units = json::object();
   for (const auto& [name, m] : line.figures) {
     if (!m.value) continue;
     figures[name] = m.whole ? json(static_cast<std::uint64_t>(*m.value)) : json(*m.value);
     units[name] = m.unit;
   }
-  Statement s(*this,
-              "INSERT INTO runs (commit_name, experiment, simulator, host_instructions, figures, units) "
-              "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (commit_name, experiment) DO UPDATE SET "
-              "simulator = excluded.simulator, host_instructions = excluded.host_instructions, "
-              "figures = excluded.figures, units = excluded.units");
+  execute("BEGIN IMMEDIATE");
+  try {
+    if (!replace) refuse_other_program(line);
+    Statement s(*this,
+                "INSERT INTO runs (commit_name, experiment, simulator, host_instructions, figures, units, program, "
+                "folder) VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (commit_name, experiment) DO UPDATE SET "
+                "simulator = excluded.simulator, host_instructions = excluded.host_instructions, "
+                "figures = excluded.figures, units = excluded.units, program = excluded.program, "
+                "folder = excluded.folder");
+    s.bind(1, line.commit);
+    s.bind(2, line.experiment);
+    s.bind(3, line.simulator);
+    s.bind(4, line.host_instructions);
+    s.bind(5, figures.dump());
+    s.bind(6, units.dump());
+    s.bind(7, line.program);
+    s.bind(8, line.folder);
+    s.step();
+  } catch (...) {
+    sqlite3_exec(db_, "ROLLBACK", nullptr, nullptr, nullptr);
+    throw;
+  }
+  execute("COMMIT");
+}
+
+void TrendFile::refuse_other_program(const TrendLine& line) {
+  Statement s(*this, "SELECT program FROM runs WHERE commit_name = ? AND experiment = ?");
   s.bind(1, line.commit);
   s.bind(2, line.experiment);
-  s.bind(3, line.simulator);
-  s.bind(4, line.host_instructions);
-  s.bind(5, figures.dump());
-  s.bind(6, units.dump());
-  s.step();
+  if (!s.step() || (s.text(0) == line.program && !line.program.empty())) return;
+  const auto known = [](const std::string& hash) {
+    return hash.empty() ? "not known" : "SHA-256 " + hash.substr(0, 12);
+  };
+  fail(fmt::format(
+      "it has a line of commit {} and {} with another program ({}; this one: {}); allowed: --commit NAME for "
+      "this one, or --replace",
+      line.commit, line.experiment, known(s.text(0)), known(line.program)));
+}
+
+/// Files of earlier versions have no such columns.
+void TrendFile::add_columns() {
+  std::set<std::string> columns;
+  {
+    Statement s(*this, "SELECT name FROM pragma_table_info('runs')");
+    while (s.step()) columns.insert(s.text(0));
+  }
+  for (const char* name : {"program", "folder"})
+    if (!columns.contains(name))
+      execute(fmt::format("ALTER TABLE runs ADD COLUMN {} TEXT NOT NULL DEFAULT ''", name).c_str());
 }
 
 std::vector<TrendLine> TrendFile::lines(const std::string& experiment) const {
   Statement s(*this,
-              "SELECT commit_name, experiment, simulator, host_instructions, figures, units "
+              "SELECT commit_name, experiment, simulator, host_instructions, figures, units, program, folder "
               "FROM runs WHERE ? IN ('', experiment) ORDER BY number");
   s.bind(1, experiment);
   std::vector<TrendLine> out;
   while (s.step()) {
-    TrendLine line{s.text(0), s.text(1), s.text(2), s.number(3), {}};
+    TrendLine line{s.text(0), s.text(1), s.text(2), s.number(3), {}, s.text(6), s.text(7)};
     const json figures = json::parse(s.text(4), nullptr, false);
     const json units = json::parse(s.text(5), nullptr, false);
     if (!figures.is_object() || !units.is_object())

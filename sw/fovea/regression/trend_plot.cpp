@@ -25,16 +25,6 @@ struct Point {
   double value;
 };
 
-std::optional<Metric> figure_of(const TrendLine& line, const std::string& name) {
-  if (name == kHostInstructions) {
-    if (!line.host_instructions) return std::nullopt;
-    return Metric{line.host_instructions, "per guest instruction", false};
-  }
-  const auto found = line.figures.find(name);
-  if (found == line.figures.end() || !found->second.value) return std::nullopt;
-  return found->second;
-}
-
 std::string mark(std::size_t series, double x, double y, const std::string& title) {
   const char* const colour = kColours[series % kColours.size()];
   const std::string what = fmt::format("<title>{}</title>", xml_text(title));
@@ -80,7 +70,8 @@ std::string short_name(const std::string& commit) {
 /// A panel for each figure, one above the other, over the commits from left to right.
 class TrendPlot {
  public:
-  TrendPlot(const std::vector<TrendLine>& lines, const std::vector<std::string>& figures) : lines_(lines) {
+  TrendPlot(const std::vector<TrendLine>& lines, const std::vector<std::string>& figures, const Tolerance& tolerance)
+      : lines_(lines), jumps_(jumps_of(lines, figures, tolerance)) {
     for (const auto& line : lines) {
       if (std::find(commits_.begin(), commits_.end(), line.commit) == commits_.end())
         commits_.push_back(line.commit);
@@ -88,7 +79,7 @@ class TrendPlot {
         experiments_.push_back(line.experiment);
     }
     for (const auto& name : figures)
-      if (std::any_of(lines.begin(), lines.end(), [&](const auto& l) { return figure_of(l, name); }))
+      if (std::any_of(lines.begin(), lines.end(), [&](const auto& l) { return trend_figure(l, name); }))
         shown_.push_back(name);
     if (shown_.empty()) throw UserError("none of the figures has a value in the database; nothing to plot");
     relative_ = experiments_.size() > 1;
@@ -130,8 +121,7 @@ class TrendPlot {
     std::vector<double> first(experiments_.size(), 0);
     for (std::size_t e = 0; e < experiments_.size(); ++e)
       for (auto line = lines_.rbegin(); line != lines_.rend(); ++line)
-        if (const auto m = figure_of(*line, figure); m && line->experiment == experiments_[e])
-          first[e] = *m->value;
+        if (const auto m = trend_figure(*line, figure); m && line->experiment == experiments_[e]) first[e] = *m->value;
     return first;
   }
 
@@ -146,7 +136,7 @@ class TrendPlot {
     double low = INFINITY, high = -INFINITY;
     std::string unit;
     for (const auto& line : lines_)
-      if (const auto m = figure_of(line, figure)) {
+      if (const auto m = trend_figure(line, figure)) {
         low = std::min(low, height_of(line, *m->value));
         high = std::max(high, height_of(line, *m->value));
         unit = relative_ ? "%" : m->unit;
@@ -175,15 +165,26 @@ class TrendPlot {
     for (std::size_t c = 0; c < commits_.size(); ++c)
       for (const auto& line : lines_)
         if (line.commit == commits_[c] && line.experiment == experiments_[experiment])
-          if (const auto m = figure_of(line, figure)) {
+          if (const auto m = trend_figure(line, figure)) {
             const double y = y_of(line, *m->value);
             path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x_of(c), y);
             marks += mark(experiment, x_of(c), y,
                           fmt::format("{} {}: {}", line.commit, line.experiment, figure_text(*m)));
+            marks += jump_mark(line, figure, x_of(c), y);
           }
     if (path.empty()) return "";
     return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n{}", path,
                        kColours[experiment % kColours.size()], marks);
+  }
+  /// A ring around the value, and how far it is from the one before.
+  std::string jump_mark(const TrendLine& line, const std::string& figure, double x, double y) const {
+    const auto jump = std::find_if(jumps_.begin(), jumps_.end(),
+                                   [&](const Jump& j) { return j.after == &line && j.figure == figure; });
+    if (jump == jumps_.end()) return "";
+    return fmt::format(
+        "<circle class=\"jump\" cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"7\" fill=\"none\" stroke=\"#000000\"/>\n"
+        "<text x=\"{2:.1f}\" y=\"{3:.1f}\" text-anchor=\"end\" fill=\"#000000\">{4}</text>\n",
+        x, y, x - 9, y + 4, std::isinf(jump->relative) ? "from 0" : fmt::format("{:+.1f} %", 100 * jump->relative));
   }
   /// At most as many as there is room for.
   std::string commit_labels() const {
@@ -198,6 +199,7 @@ class TrendPlot {
   }
 
   const std::vector<TrendLine>& lines_;
+  std::vector<Jump> jumps_;
   std::vector<std::string> commits_, experiments_, shown_;
   /// Curves of several experiments differ too much in height to show a change of a few percent; they
   /// are drawn as changes since their first commit.
@@ -206,8 +208,9 @@ class TrendPlot {
 
 }  // namespace
 
-std::string trend_svg(const std::vector<TrendLine>& lines, const std::vector<std::string>& figures) {
-  return TrendPlot(lines, figures).svg();
+std::string trend_svg(const std::vector<TrendLine>& lines, const std::vector<std::string>& figures,
+                      const Tolerance& tolerance) {
+  return TrendPlot(lines, figures, tolerance).svg();
 }
 
 }  // namespace fovea::regression
