@@ -7,6 +7,7 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/regression/check_blame.h"
 #include "sw/fovea/regression/compare.h"
 
 namespace fovea::regression {
@@ -129,9 +130,9 @@ CheckResult check_run(const RunFigures& run, const Baseline& baseline, bool acro
   if (out.failures() == 0) return out;
   const Attribution before = attribution_of(reference, true), after = attribution_of(run, true);
   if (before.rows.empty() || after.rows.empty()) return out;
-  out.difference = difference_of(before, after, circumstances_of(reference, run));
-  out.blame = blame_text(*out.difference,
-                         blame_of(*out.difference, true));
+  CheckBlame blame = blame_failures(out.findings, before, after, circumstances_of(reference, run));
+  out.difference = std::move(blame.difference);
+  out.blame = std::move(blame.text);
   out.advice = advice_text(run, before, after);
   return out;
 }

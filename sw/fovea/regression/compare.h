@@ -29,6 +29,7 @@ struct Comparison {
   std::vector<MetricChange> changes;  ///< beyond the tolerance; sorted by name
   std::vector<std::string> settings;  ///< "key: a -> b", sentences about inputs
   std::optional<Difference> difference;
+  std::vector<Difference> startup;    ///< of the parts before the window whose time changed
 };
 
 /// Lines about what differs in the circumstances of two results: simulator, parameters, inputs.

@@ -95,7 +95,9 @@ bool write_reference(const fs::path& folder, const RunFigures& run, const Baseli
   const bool complete = fs::exists(folder / "figures.csv", error);
   if (!changed && complete) {
     const Attribution had = attribution_of(read_reference(baseline), true), has = attribution_of(run, true);
-    if (had.by_function >= has.by_function && had.places.empty() <= has.places.empty()) return false;
+    if (had.by_function >= has.by_function && had.places.empty() <= has.places.empty() &&
+        had.startup.empty() <= has.startup.empty())
+      return false;
   }
   if (is_run_folder(folder) || (!complete && fs::is_directory(folder, error) && !fs::is_empty(folder, error)))
     throw UserError(fmt::format("'{}' would be the reference, but it holds something else; give the baseline another "
