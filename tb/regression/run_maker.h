@@ -49,8 +49,8 @@ struct RunMaker {
     if (!no_stats) dir.write(name + "/stats.json", stats + "\n}\n");
     if (!stalls.empty()) dir.write(name + "/stalls.csv", "cause,region,culprit,cycles\n" + stalls);
     if (!profile.empty())
-      dir.write(name + "/profile.csv", std::string("phase,function,file,line,cause,region,culprit,clocks,instructions") +
-                                           (chains ? ",inlined_in,polls\n" : "\n") + profile);
+      dir.write(name + "/profile.csv", "phase,function,file,line,cause,region,culprit,clocks,instructions" +
+                                           std::string(chains ? ",inlined_in,polls\n" : "\n") + profile);
     for (const char* file : {"functions.csv", "paths.csv", "objects.csv"})
       std::filesystem::remove(dir / (name + "/" + file));
     if (!paths.empty()) dir.write(name + "/paths.csv", "phase,path,clocks\n" + paths);
