@@ -39,7 +39,7 @@ std::string meaning(const ElfImage& image, std::uint32_t address) {
   for (int looks = 0; looks < kNearest && above != symbols.begin(); ++looks) {
     const ElfSymbol& s = *--above;
     if (address == s.address || (address >= kSmall && address - s.address < s.size))
-      return fmt::format("{}+{}", s.name, address - s.address);
+      return fmt::format("{}+{}", s.text(), address - s.address);
   }
   if (address < kSmall) return "";
   for (const ElfSection& s : image.sections())

@@ -1,12 +1,16 @@
 #include "sw/fovea/elf_image.h"
 
+#include <cxxabi.h>
 #include <fmt/format.h>
 #include <gelf.h>
 #include <libelf.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
+#include <map>
 #include <memory>
+#include <set>
 #include <tuple>
 
 #include "model/common/check.h"
@@ -116,11 +120,13 @@ class ElfFile {
   void add_symbols(Elf_Scn* section, const GElf_Shdr& table, std::vector<ElfSymbol>& out) const {
     Elf_Data* data = elf_getdata(section, nullptr);
     if (!data || table.sh_entsize == 0) fail(fmt::format("{}: the symbol table", kCut));
+    std::string source;  // of the local symbols that follow
     for (std::size_t i = 0; i < table.sh_size / table.sh_entsize; ++i) {
       GElf_Sym s{};
       if (!gelf_getsym(data, static_cast<int>(i), &s)) fail(fmt::format("{}: symbol {}", kCut, i));
       const char* text = elf_strptr(elf(), table.sh_link, s.st_name);
       const unsigned type = GELF_ST_TYPE(s.st_info);
+      if (type == STT_FILE) source = text ? one_line(text, std::string::npos) : "";
       // '$a', '$t' and '$d' mark instruction sets and data inside a section; they are not symbols.
       if (!text || *text == '\0' || *text == '$' || s.st_shndx == SHN_UNDEF) continue;
       if (type != STT_FUNC && type != STT_OBJECT && type != STT_NOTYPE) continue;
@@ -129,6 +135,7 @@ class ElfFile {
                      type == STT_FUNC ? address & ~1u : address,
                      static_cast<std::uint32_t>(s.st_size), type == STT_FUNC || labels_code(s),
                      type == STT_FUNC && (address & 1) != 0});
+      if (GELF_ST_BIND(s.st_info) == STB_LOCAL) out.back().file = source;
     }
   }
 
@@ -157,7 +164,39 @@ class ElfFile {
   std::unique_ptr<Elf, ElfEnd> elf_;
 };
 
+/// Leaves `file` only where it is needed to tell symbols apart, and makes `shown` such that the two do. In the order of
+/// the addresses, so that the result is deterministic.
+void name_for_people(std::vector<ElfSymbol>& symbols) {
+  std::map<std::string, std::vector<ElfSymbol*>> named;
+  for (ElfSymbol& s : symbols) named[s.shown = demangled(s.name)].push_back(&s);
+  for (auto& [shown, alike] : named) {
+    std::map<std::string, std::set<std::uint32_t>> addresses;  // by the linker's name
+    std::set<std::uint32_t> all;
+    for (const ElfSymbol* const s : alike) addresses[s->name].insert(s->address), all.insert(s->address);
+    std::map<std::pair<std::string, std::string>, std::vector<std::uint32_t>> places;  // by name and file
+    for (ElfSymbol* const s : alike) {
+      if (addresses.size() > 1 && all.size() > 1) s->shown += " [" + s->name + "]";
+      if (addresses[s->name].size() == 1) {
+        s->file.clear();
+        continue;
+      }
+      auto& same = places[{s->name, s->file}];
+      auto at = std::find(same.begin(), same.end(), s->address);
+      if (at == same.end()) at = same.insert(same.end(), s->address);
+      if (at != same.begin()) s->file += fmt::format("{}#{}", s->file.empty() ? "" : " ", at - same.begin() + 1);
+    }
+  }
+}
+
 }  // namespace
+
+std::string demangled(const std::string& name) {
+  if (!name.starts_with("_Z")) return name;
+  int status = 0;
+  const std::unique_ptr<char, decltype(&std::free)> text(abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &status),
+                                                         &std::free);
+  return status == 0 && text ? text.get() : name;
+}
 
 ElfImage ElfImage::load(const std::filesystem::path& path) {
   ElfImage image;
@@ -186,6 +225,7 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
     return std::tuple(a.address, b.size, std::string_view(a.name)) <
            std::tuple(b.address, a.size, std::string_view(b.name));
   });
+  name_for_people(image.symbols_);
   for (std::size_t k = 0; k < image.symbols_.size(); ++k)
     if (image.symbols_[k].function) image.functions_.push_back(k);
   return image;
@@ -194,6 +234,9 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
 const ElfSymbol* ElfImage::find(std::string_view name) const {
   const auto found = std::find_if(symbols_.begin(), symbols_.end(),
                                   [&](const ElfSymbol& s) { return s.name == name; });
+  if (found == symbols_.end())
+    for (const ElfSymbol& s : symbols_)
+      if (s.text() == name) return &s;
   return found == symbols_.end() ? nullptr : &*found;
 }
 
@@ -222,7 +265,7 @@ const ElfSymbol* ElfImage::function_at(std::uint32_t address) const {
 std::string ElfImage::describe(std::uint32_t address) const {
   const ElfSymbol* s = function_at(address);
   if (!s) return "";
-  return address == s->address ? s->name : fmt::format("{}+0x{:x}", s->name, address - s->address);
+  return address == s->address ? s->text() : fmt::format("{}+0x{:x}", s->text(), address - s->address);
 }
 
 void check_fits(const ElfImage& image, std::span<const MemoryRegion> regions) {

@@ -19,12 +19,23 @@ struct ElfSegment {
 };
 
 struct ElfSymbol {
-  std::string name;
+  std::string name;  ///< as the linker knows it
   std::uint32_t address = 0;  ///< without the Thumb bit
   std::uint32_t size = 0;     ///< 0: unknown
   bool function = false;      ///< declared as a function, or a label in code
   bool thumb = false;         ///< a function in Thumb state, as far as its declaration tells
+  /// For people: demangled, as in `A::step(int)`. What differs by its mangled name alone, such as the two
+  /// destructors of a class, has that name behind it in brackets.
+  std::string shown = {};
+  /// The source file, if symbols of other addresses have the same `shown`; otherwise empty.
+  std::string file = {};
+
+  /// "A::step(int)", "helper (a.c)": no two symbols of a program at different addresses have the same text.
+  std::string text() const { return file.empty() ? shown : shown + " (" + file + ")"; }
 };
+
+/// The name in the source for a mangled one, `foo(int) [clone .part.0]` for a piece; any other name as it is.
+std::string demangled(const std::string& name);
 
 /// A named part of the program that occupies memory at run time.
 struct ElfSection {
@@ -49,7 +60,7 @@ class ElfImage {
   /// All named symbols, sorted by address.
   const std::vector<ElfSymbol>& symbols() const { return symbols_; }
 
-  /// The symbol called `name`, or nullptr.
+  /// The symbol called `name` by the linker or by ElfSymbol::text(), or nullptr.
   const ElfSymbol* find(std::string_view name) const;
   /// The function that contains an address; nullptr if the nearest one below ends before it.
   const ElfSymbol* function_at(std::uint32_t address) const;

@@ -145,7 +145,7 @@ ProfileResult ExecSession::profile() const {
   ProfileData data;
   data.program = program_.name();
   data.regions = core_.regions().names();
-  data.phases = {{"run", true, core_.profile()->rows(0)}};
+  data.phases = {{"run", true, core_.profile()->rows(0), stacks_of(*core_.profile(), 0)}};
   add_stacks(data, core_.profile()->stacks);
   data.masked = core_.profile()->mask.longest();
   return profile_result(data, programs());

@@ -121,9 +121,24 @@ std::string functions_text(const ProfileData& data, SourceLines& lines, std::siz
   return out;
 }
 
+/// "function|file", as in a path of paths.csv.
+std::string path_element(const SourceFrame& f) {
+  std::string text = f.function + "|" + f.file;
+  std::replace(text.begin(), text.end(), ';', ',');
+  return text;
+}
+
+/// The functions that hold the innermost one at an address, outermost first.
+std::string holders_of(std::uint32_t address, SourceLines& lines) {
+  const auto& frames = lines.at(address);
+  std::string out;
+  for (std::size_t k = frames.size(); k-- > 1;) out += (out.empty() ? "" : ";") + path_element(frames[k]);
+  return out;
+}
+
 /// The name of a function in a stack; a semicolon would begin another one.
 std::string stack_name(std::uint32_t address, SourceLines& lines) {
-  std::string name = lines.at(address).back().function;
+  std::string name = lines.function_text(address);
   std::replace(name.begin(), name.end(), ';', ',');
   return name;
 }
@@ -168,34 +183,61 @@ std::vector<cpu::CallStacks::Function> program_functions(std::span<const ElfImag
   return out;
 }
 
-std::string profile_csv(const ProfileData& data, SourceLines& lines) {
-  std::string out = "phase,function,file,line,cause,region,culprit,clocks,instructions\n";
+std::string profile_csv(const ProfileData& data, SourceLines& lines, const PollLoops& polls) {
+  std::string out = "phase,function,file,line,cause,region,culprit,clocks,instructions,inlined_in,polls\n";
+  struct Key {
+    SourceFrame frame;
+    std::string holders;
+    bool polls;
+    std::uint8_t cause, region, culprit;
+    auto flat() const {
+      return std::tie(frame.function, frame.file, frame.line, cause, region, culprit, holders, polls);
+    }
+    bool operator<(const Key& other) const { return flat() < other.flat(); }
+  };
   for (const ProfilePhase& phase : data.phases) {
-    using Key = std::tuple<SourceFrame, std::uint8_t, std::uint8_t, std::uint8_t>;
-    const auto less = [](const Key& a, const Key& b) {
-      const auto flat = [](const Key& k) {
-        const SourceFrame& f = std::get<0>(k);
-        return std::tie(f.function, f.file, f.line, std::get<1>(k), std::get<2>(k), std::get<3>(k));
-      };
-      return flat(a) < flat(b);
-    };
-    std::map<Key, std::pair<std::uint64_t, std::uint64_t>, decltype(less)> sums(less);
+    std::map<Key, std::pair<std::uint64_t, std::uint64_t>> sums;
     for (const ProfileRow& r : phase.rows) {
-      auto& s = sums[{lines.at(r.address).front(), r.cause, r.region, r.culprit}];
+      auto& s = sums[{lines.at(r.address).front(), holders_of(r.address, lines), polls.contains(r.address), r.cause,
+                      r.region, r.culprit}];
       s.first += r.clocks;
       s.second += r.instructions;
     }
     for (const auto& [key, sum] : sums) {
       if (sum.first == 0) continue;
-      const auto& [frame, cause, region, culprit] = key;
-      const bool stalled = cause >= ProfileRow::kStall;
-      out += fmt::format("{},{},{},{},{},{},{},{},{}\n", csv_field(phase.name),
-                         csv_field(frame.function), csv_field(frame.file),
-                         frame.line ? std::to_string(frame.line) : "", cause_text(cause),
-                         stalled ? csv_field(data.regions.at(region)) : "",
-                         stalled ? csv_field(std::string(cpu::stall_culprit_name(culprit))) : "",
-                         sum.first, sum.second);
+      const bool stalled = key.cause >= ProfileRow::kStall;
+      out += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(phase.name), csv_field(key.frame.function),
+                         csv_field(key.frame.file), key.frame.line ? std::to_string(key.frame.line) : "",
+                         cause_text(key.cause), stalled ? csv_field(data.regions.at(key.region)) : "",
+                         stalled ? csv_field(std::string(cpu::stall_culprit_name(key.culprit))) : "", sum.first,
+                         sum.second, csv_field(key.holders), key.polls ? "1" : "");
     }
+  }
+  return out;
+}
+
+std::string paths_csv(const ProfileData& data, SourceLines& lines) {
+  std::string out = "phase,path,clocks\n";
+  for (const ProfilePhase& phase : data.phases) {
+    std::map<std::string, std::uint64_t> sums;
+    for (const ProfileStack& s : phase.stacks) {
+      std::string path;
+      for (const std::uint32_t f : s.functions) path += (path.empty() ? "" : ";") + path_element(lines.at(f).back());
+      sums[path] += s.clocks;
+    }
+    for (const auto& [path, clocks] : sums)
+      out += fmt::format("{},{},{}\n", csv_field(phase.name), csv_field(path), clocks);
+  }
+  return out;
+}
+
+std::string objects_csv(std::span<const ElfImage* const> programs) {
+  std::string out = "object,address,size\n";
+  for (const ElfImage* const image : programs) {
+    if (!image) continue;
+    for (const ElfSymbol& s : image->symbols())
+      if (!s.function && s.size >= kObjectBytes)
+        out += fmt::format("{},0x{:08x},{}\n", csv_field(s.text()), s.address, s.size);
   }
   return out;
 }
@@ -207,7 +249,7 @@ std::string functions_csv(const ProfileData& data, SourceLines& lines,
   std::map<std::pair<std::string, std::string>, Homes> places;
   for (const ProfilePhase& phase : data.phases)
     for (const ProfileRow& r : phase.rows) {
-      if (!phase.window || r.clocks == 0) continue;
+      if (r.clocks == 0) continue;
       const auto home = lines.function_at(r.address);
       const SourceFrame& f = lines.at(r.address).front();
       if (home.second) places[{f.function, f.file}][home.second->address] = home;
@@ -330,7 +372,7 @@ std::string profile_text(const ProfileData& data, SourceLines& lines) {
     out += "\nStacks, by the values of the stack pointer at calls and returns:\n";
     for (const auto& r : data.ranges)
       out += fmt::format("  0x{:08x} down to 0x{:08x}: {} bytes, begun in {}\n", r.base, r.low,
-                         r.base - r.low, lines.at(r.function).back().function);
+                         r.base - r.low, lines.function_text(r.function));
   }
   if (data.masked.clocks)
     out += fmt::format("\nLongest stretch with IRQs masked, without sleep: {} clocks, from 0x{:08x} {} "
@@ -361,7 +403,9 @@ ProfileResult profile_result(const ProfileData& data, std::span<const ElfImage* 
   std::string table = profile_table(data, lines, kFunctions);
   if (!lines.have_lines())
     table += "  the program has no debug information: the profile knows functions, but no lines\n";
-  return {{{"profile.csv", profile_csv(data, lines)},
+  return {{{"profile.csv", profile_csv(data, lines, PollLoops(programs))},
+           {"paths.csv", paths_csv(data, lines)},
+           {"objects.csv", objects_csv(programs)},
            {"profile.folded", profile_folded(data, lines)},
            {"profile.callgrind", profile_callgrind(data, lines)},
            {"profile.txt", profile_text(data, lines)},

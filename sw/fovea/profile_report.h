@@ -7,21 +7,23 @@
 #include <vector>
 
 #include "model/cpu/core/clock_profile.h"
+#include "sw/fovea/poll_loops.h"
 #include "sw/fovea/source_lines.h"
 
 namespace fovea::app {
+
+/// Clocks that were spent in a function that was called in this way.
+struct ProfileStack {
+  std::vector<std::uint32_t> functions;  ///< addresses of their first instructions, outermost first
+  std::uint64_t clocks = 0;
+};
 
 /// A part of the run, such as `boot`; its rows as ClockProfile gives them.
 struct ProfilePhase {
   std::string name;
   bool window = false;  ///< part of the measured window
   std::vector<cpu::ProfileRow> rows;
-};
-
-/// Clocks of the window that were spent in a function that was called in this way.
-struct ProfileStack {
-  std::vector<std::uint32_t> functions;  ///< addresses of their first instructions, outermost first
-  std::uint64_t clocks = 0;
+  std::vector<ProfileStack> stacks = {};  ///< all clocks of the phase by call path
 };
 
 /// Calls of the window from one instruction to one function.
@@ -35,7 +37,7 @@ struct ProfileData {
   std::string program;  ///< file name
   std::vector<ProfilePhase> phases;
   std::vector<std::string> regions;  ///< names, by number
-  std::vector<ProfileStack> stacks;
+  std::vector<ProfileStack> stacks;  ///< of the window
   std::vector<ProfileCall> calls;
   std::vector<cpu::CallStacks::Range> ranges;  ///< of the stack pointer
   cpu::MaskWatch::Stretch masked;              ///< the longest stretch with IRQs masked
@@ -52,10 +54,16 @@ struct ResultFile {
   std::string name, text;
 };
 
-/// profile.csv: `phase,function,file,line,cause,region,culprit,clocks,instructions`, a row for each
-/// combination with clocks. Instructions are counted in the rows of `issue`. Equal profiles give equal
-/// bytes.
-std::string profile_csv(const ProfileData& data, SourceLines& lines);
+/// profile.csv: `phase,function,file,line,cause,region,culprit,clocks,instructions,inlined_in,polls`, a row
+/// for each combination with clocks. Instructions are counted in the rows of `issue`. `inlined_in`: the
+/// functions that hold the inlined one, outermost first, each as `function|file`, with `;` between them.
+/// `polls`: 1 in a loop that only waits (poll_loops.h). Equal profiles give equal bytes.
+std::string profile_csv(const ProfileData& data, SourceLines& lines, const PollLoops& polls);
+/// paths.csv: `phase,path,clocks`, the clocks of each phase by call path, written as `inlined_in` is.
+std::string paths_csv(const ProfileData& data, SourceLines& lines);
+/// objects.csv: `object,address,size`, the objects of the programs from kObjectBytes on, by address.
+std::string objects_csv(std::span<const ElfImage* const> programs);
+inline constexpr std::uint32_t kObjectBytes = 64;
 /// profile.callgrind: the window by instruction, with calls, as callgrind_annotate and KCachegrind read
 /// it.
 std::string profile_callgrind(const ProfileData& data, SourceLines& lines);
@@ -66,8 +74,8 @@ std::string profile_text(const ProfileData& data, SourceLines& lines);
 /// interrupts.csv: `interrupt,count,mean_ns,p99_ns,max_ns`, from the latch of each interrupt that the
 /// window has seen to the instruction at its vector. p99: no more than 1 % took longer.
 std::string interrupts_csv(const ProfileData& data);
-/// functions.csv: `function,file,address,size,code`, for each function of profile.csv with clocks in the
-/// window where its code lies (that of an inlined one in each function that holds it) and a hash of it
+/// functions.csv: `function,file,address,size,code`, for each function of profile.csv with clocks where its
+/// code lies (that of an inlined one in each function that holds it) and a hash of it
 /// that does not depend on addresses (code_places.h). The row `(data)` has the bytes and the hash of all
 /// objects.
 std::string functions_csv(const ProfileData& data, SourceLines& lines,

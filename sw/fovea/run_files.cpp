@@ -23,9 +23,9 @@ constexpr std::size_t kMaxStatsBytes = 64u << 20;
 /// The files of all commands. RunDir refuses to write files that are not listed here.
 constexpr auto kFiles = std::to_array<std::string_view>(
     {"profile.csv",   "profile.folded", "profile.callgrind", "profile.txt", "interrupts.csv", "frame_parts.csv",
-     "functions.csv", "slowest.csv",    "requests.csv",      "config.json", "stats.json",     "host.json",
-     "frames.csv",    "timeline.csv",   "latency.csv",       "stalls.csv",  "uart.log",       "uart0.input",
-     "registers.log", "display.mp4",    "report.html"});
+     "functions.csv", "paths.csv",      "objects.csv",       "slowest.csv", "requests.csv",   "config.json",
+     "stats.json",    "host.json",      "frames.csv",        "timeline.csv", "latency.csv",   "stalls.csv",
+     "uart.log",      "uart0.input",    "registers.log",     "display.mp4", "report.html"});
 
 /// Folders of numbered files.
 struct Series {

@@ -12,20 +12,30 @@ void add_stacks(ProfileData& data, const cpu::CallStacks& stacks) {
   data.ranges = stacks.ranges();
 }
 
+std::vector<ProfileStack> stacks_of(const cpu::ClockProfile& profile, std::size_t section) {
+  std::vector<ProfileStack> out;
+  for (const auto& p : profile.stacks.paths_of(section)) out.push_back({p.functions, p.clocks});
+  return out;
+}
+
 RunProfile::RunProfile(board::Board& board, bool whole_run,
                        std::span<const ElfImage* const> programs)
     : board_(board), core_(board.dm365.arm.core()), whole_run_(whole_run) {
   cpu::ClockProfile& profile = core_.start_profile();
   profile.stacks.set_functions(program_functions(programs));
-  profile.count_stacks_of(whole_run ? kBoot : kFrames);
+  if (whole_run) profile.count_stacks_of({kBoot});
+  else profile.count_stacks_of({kFrames, kRemap});
   interrupts_ = profile.observe_interrupts([this](bool, std::uint64_t cycle) { interrupt(cycle); });
   phases_ = board.observe_phases([this](board::Phase p, Picoseconds at) { phase(p, at); });
 }
 
 /// Until the window opens; a reset begins with the first phase again.
 void RunProfile::phase(board::Phase phase, Picoseconds at) {
-  if (phase == board::Phase::kRemapStart || phase == board::Phase::kRemapEnd)
+  if (phase == board::Phase::kRemapStart || phase == board::Phase::kRemapEnd) {
     core_.mark_snapshot(at);
+    remaps_now_ = phase == board::Phase::kRemapStart;
+    if (!whole_run_ && reached_ == kFrames) core_.mark_section(at, remaps_now_ ? kRemap : kFrames);
+  }
   if (whole_run_ || reached_ >= kFrames) return;
   Section next;
   switch (phase) {
@@ -60,7 +70,7 @@ void RunProfile::window(bool open) {
   if (whole_run_ && open) return;
   opened_ = opened_ || open;
   reached_ = open ? kFrames : kAfter;
-  core_.mark_section(kernel_time(), reached_);
+  core_.mark_section(kernel_time(), open && remaps_now_ ? kRemap : reached_);
 }
 
 ProfileData RunProfile::finish(const cpu::Counts& end, const std::string& program) {
@@ -74,14 +84,15 @@ ProfileData RunProfile::finish(const cpu::Counts& end, const std::string& progra
   data.interrupts = delays_;
   for (const auto& s : p.snapshots()) remaps_[s.at] = s;
   if (whole_run_) {
-    data.phases = {{"run", true, p.rows(kBoot)}};
+    data.phases = {{"run", true, p.rows(kBoot), stacks_of(p, kBoot)}};
     return data;
   }
   const bool opened = opened_;
-  data.phases = {{"boot", !opened, p.rows(kBoot)},
-                 {"lut", !opened, p.rows(kLut)},
-                 {"lock", !opened, p.rows(kLock)},
-                 {"frames", true, p.rows(kFrames)}};
+  data.phases = {{"boot", !opened, p.rows(kBoot), stacks_of(p, kBoot)},
+                 {"lut", !opened, p.rows(kLut), stacks_of(p, kLut)},
+                 {"lock", !opened, p.rows(kLock), stacks_of(p, kLock)},
+                 {"frames", true, p.rows(kFrames), stacks_of(p, kFrames)},
+                 {"remap", true, p.rows(kRemap), stacks_of(p, kRemap)}};
   return data;
 }
 

@@ -12,11 +12,13 @@
 
 namespace fovea::app {
 
+/// All clocks of a section by call path.
+std::vector<ProfileStack> stacks_of(const cpu::ClockProfile& profile, std::size_t section);
 /// Puts what a core's profile counted of call stacks into `data`.
 void add_stacks(ProfileData& data, const cpu::CallStacks& stacks);
 
-/// Phases are those that the firmware shows on its pins, up to the measured window, which is the phase
-/// `frames`. If the window is the whole run, that is one phase, `run`.
+/// Phases are those that the firmware shows on its pins, up to the measured window. Of this, the remaps are the phase
+/// `remap` and the rest is `frames`. If the window is the whole run, that is one phase, `run`.
 class RunProfile {
  public:
   /// Before the first instruction. @param whole_run the window is the whole run
@@ -32,7 +34,7 @@ class RunProfile {
   std::string frame_parts() const { return frame_parts_csv(frames_, remaps_); }
 
  private:
-  enum Section : std::size_t { kBoot, kLut, kLock, kFrames, kAfter };
+  enum Section : std::size_t { kBoot, kLut, kLock, kFrames, kAfter, kRemap };
   void phase(board::Phase phase, Picoseconds at);
   void interrupt(std::uint64_t cycle);
 
@@ -42,6 +44,7 @@ class RunProfile {
   bool whole_run_;
   Section reached_ = kBoot;
   bool opened_ = false;  // the window
+  bool remaps_now_ = false;
   std::map<std::string, std::vector<Picoseconds>> delays_;  // by source of the interrupt
   std::vector<FrameRow> frames_;
   std::map<Picoseconds, cpu::ClockProfile::Snapshot> remaps_;

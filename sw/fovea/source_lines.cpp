@@ -13,24 +13,25 @@
 #include <optional>
 
 #include "model/common/check.h"
+#include "sw/fovea/die_names.h"
 
 namespace fovea::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The name of a function, which an inlined copy has at its abstract origin.
-std::string name_of(Dwarf_Die* die) {
-  Dwarf_Attribute a;
-  const char* const name = dwarf_formstring(dwarf_attr_integrate(die, DW_AT_name, &a));
-  return name ? name : "";
-}
-
 std::optional<Dwarf_Word> number(Dwarf_Die* die, unsigned attribute) {
   Dwarf_Attribute a;
   Dwarf_Word value = 0;
   if (dwarf_formudata(dwarf_attr(die, attribute, &a), &value) != 0) return std::nullopt;
   return value;
+}
+
+/// Of C++, the symbol knows more than the debug information; and a piece of a function, such as `run.part.0`, is called
+/// by the function itself, which would look like a recursion under one name. Where the compiler has left nothing but
+/// the piece, it is the function.
+bool mangled_or_piece(const ElfImage& image, const ElfSymbol& symbol, const std::string& name) {
+  return symbol.name.starts_with("_Z") || (symbol.name.starts_with(name + ".") && image.find(name));
 }
 
 }  // namespace
@@ -40,6 +41,7 @@ struct SourceLines::Program {
   int file = -1;
   Dwarf* dwarf = nullptr;
   fs::path root;  // the folder that all sources lie in
+  DieNames names;
 
   explicit Program(const ElfImage& i) : image(i) {
     file = open(image.file().c_str(), O_RDONLY | O_CLOEXEC);
@@ -109,7 +111,8 @@ struct SourceLines::Program {
     for (int k = 0; k < count; ++k) {
       Dwarf_Addr low = 0;
       if (dwarf_tag(&scopes[k]) != DW_TAG_subprogram) continue;
-      is = dwarf_lowpc(&scopes[k], &low) == 0 && low == 0 && !(symbol && symbol->name == name_of(&scopes[k]));
+      is = dwarf_lowpc(&scopes[k], &low) == 0 && low == 0 &&
+           !(symbol && (symbol->name == linkage_or_name(&scopes[k]) || symbol->shown == names.of(&scopes[k])));
       break;
     }
     std::free(scopes);
@@ -152,7 +155,9 @@ struct SourceLines::Program {
       for (int k = 0; k < count; ++k) {
         const int tag = dwarf_tag(&scopes[k]);
         if (tag != DW_TAG_inlined_subroutine && tag != DW_TAG_subprogram) continue;
-        here.function = name_of(&scopes[k]);
+        here.function = names.of(&scopes[k]);
+        if (tag == DW_TAG_subprogram && symbol && mangled_or_piece(image, *symbol, here.function))
+          here.function = symbol->shown;
         out.push_back(here);
         if (tag == DW_TAG_subprogram) break;
         here.file = file_of(&unit, number(&scopes[k], DW_AT_call_file).value_or(~Dwarf_Word{0}));
@@ -165,7 +170,8 @@ struct SourceLines::Program {
       out.push_back(here);
     }
     for (SourceFrame& f : out)
-      if (f.function.empty()) f.function = symbol ? symbol->name : "(unknown)";
+      if (f.function.empty()) f.function = symbol ? symbol->shown : "(unknown)";
+    if (!out.empty() && out.back().file.empty() && symbol) out.back().file = symbol->file;
     return out;
   }
 };
@@ -193,6 +199,13 @@ std::pair<const ElfImage*, const ElfSymbol*> SourceLines::function_at(std::uint3
   for (const auto& p : programs_)
     if (const ElfSymbol* const s = p->image.function_at(address)) return {&p->image, s};
   return {};
+}
+
+std::string SourceLines::function_text(std::uint32_t address) {
+  const SourceFrame& f = at(address).back();
+  const ElfSymbol* const symbol = function_at(address).second;
+  if (!symbol || symbol->file.empty()) return f.function;
+  return fmt::format("{} ({})", f.function, f.file.empty() ? symbol->file : f.file);
 }
 
 std::uint32_t SourceLines::function_start(std::uint32_t address) const {

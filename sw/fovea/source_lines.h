@@ -13,6 +13,7 @@ namespace fovea::app {
 /// A function that an address belongs to, and the line in it: of the instruction, or of the call that
 /// was inlined.
 struct SourceFrame {
+  /// As in `A::step(int)`; of C the plain name. Together with the file it tells functions apart.
   std::string function;
   std::string file;   ///< "" if unknown
   unsigned line = 0;  ///< 0 if unknown
@@ -33,6 +34,8 @@ class SourceLines {
   /// The functions at an address: the innermost inlined one first, the function itself last. One frame
   /// called "(unknown)" if no program has a function there.
   const std::vector<SourceFrame>& at(std::uint32_t address);
+  /// The function itself in one text: "helper (a.c)" if the program has another one of that name.
+  std::string function_text(std::uint32_t address);
   /// Beginning of the function itself, or the address if it is unknown.
   std::uint32_t function_start(std::uint32_t address) const;
   /// The function itself and its program; null if it is unknown.

@@ -50,7 +50,7 @@ void add_program_regions(RegionMap& map, const ElfImage& image,
         image.sections().begin(), image.sections().end(),
         [&](const ElfSection& s) { return o->address - s.address < s.size; });
     if (home == image.sections().end()) continue;
-    if (!map.add(o->name, o->address + offset(*home, image, memory), o->size)) break;
+    if (!map.add(o->text(), o->address + offset(*home, image, memory), o->size)) break;
   }
 }
 

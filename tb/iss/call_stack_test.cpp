@@ -441,6 +441,25 @@ TEST_F(StacksByHandTest, AWatcherSeesCallersAndWhatAnExceptionInterrupts) {
   EXPECT_EQ(watched.clocks.at({0x100}), 35u);
 }
 
+// main runs from 10 to 30 and from 45 on, 0x200 in between; the section changes at 35 and at 50, and 60 is the end.
+TEST_F(StacksByHandTest, EachSectionHasItsClocksWhetherTheyAreCountedOrNot) {
+  stacks.call(30, 0x110, 0x200, 0x114, 0x1000);
+  stacks.enter(35, false, 7);
+  stacks.jump(45, 0x114, 0x1000);
+  stacks.enter(50, true, 0);
+  stacks.count(60, false);
+  const auto clocks_of = [this](std::size_t section) {
+    StackClocks out;
+    for (const auto& p : stacks.paths_of(section)) out[p.functions] = p.clocks;
+    return out;
+  };
+  EXPECT_EQ(clocks_of(7), (StackClocks{{{0x100, 0x200}, 10}, {{0x100}, 5}}));
+  EXPECT_EQ(clocks_of(0), (StackClocks{{{0x100}, 30}, {{0x100, 0x200}, 5}}));
+  StackClocks counted;
+  for (const auto& p : stacks.paths()) counted[p.functions] = p.clocks;
+  EXPECT_EQ(counted, clocks_of(0));
+}
+
 // The clocks up to a reset belong to the function that it ended.
 TEST_F(StacksByHandTest, AResetEndsWhatRanBefore) {
   stacks.call(30, 0x110, 0x200, 0x114, 0x1000);

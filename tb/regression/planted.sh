@@ -85,7 +85,7 @@ for planted; do
       run staged "${window[@]}" &&
         expects staged &&
         run prefetch "${window[@]}" -s firmware.elf="$out/prefetch.elf" &&
-        against=staged blamed prefetch "^blamed: wait_for \(method_staged.c:$waits\) executes more" ;;
+        against=staged blamed prefetch "^blamed: wait_for \(method_staged.c:$waits\) polls longer" ;;
     ahead) # a code is loaded where it is used, not before the store
       codes=(-s firmware.kernel=codes)
       firmware ahead kernels/remap_codes.S \

@@ -22,6 +22,8 @@ struct RunMaker {
   /// name -> (value, unit)
   std::map<std::string, std::pair<std::string, std::string>> figures;
   std::string stalls, profile, functions;         ///< rows without the header; empty: no file
+  std::string paths, objects;                     ///< the same
+  bool chains = false;                            ///< the rows of the profile have `inlined_in` and `polls`
   bool no_stats = false;
 
   RunMaker& figure(const std::string& name, const std::string& value, const std::string& unit = "1") {
@@ -53,9 +55,12 @@ struct RunMaker {
     if (!no_stats) dir.write(name + "/stats.json", stats + "\n}\n");
     if (!stalls.empty()) dir.write(name + "/stalls.csv", "cause,region,culprit,cycles\n" + stalls);
     if (!profile.empty())
-      dir.write(name + "/profile.csv",
-                "phase,function,file,line,cause,region,culprit,clocks,instructions\n" + profile);
-    std::filesystem::remove(dir / (name + "/functions.csv"));
+      dir.write(name + "/profile.csv", "phase,function,file,line,cause,region,culprit,clocks,instructions" +
+                                           std::string(chains ? ",inlined_in,polls\n" : "\n") + profile);
+    for (const char* file : {"functions.csv", "paths.csv", "objects.csv"})
+      std::filesystem::remove(dir / (name + "/" + file));
+    if (!paths.empty()) dir.write(name + "/paths.csv", "phase,path,clocks\n" + paths);
+    if (!objects.empty()) dir.write(name + "/objects.csv", "object,address,size\n" + objects);
     if (!functions.empty()) dir.write(name + "/functions.csv", "function,file,address,size,code\n" + functions);
     return dir / name;
   }

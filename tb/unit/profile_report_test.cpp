@@ -102,7 +102,7 @@ class ProfileReportTest : public testing::Test {
     data.regions = {"none", "other", "sdram, slow"};
     const auto dcache = stall(cpu::Cause::kDcache);
     data.phases = {
-        {"boot", false, {{start, ProfileRow::kIssue, 0, 0, 7, 5}}},
+        {"boot", false, {{start, ProfileRow::kIssue, 0, 0, 7, 5}}, {{{start}, 7}}},
         {"frames",
          true,
          {{start, ProfileRow::kIssue, 0, 0, 20, 10},
@@ -122,18 +122,18 @@ class ProfileReportTest : public testing::Test {
 };
 
 TEST_F(ProfileReportTest, RowsByFunctionLineCauseRegionAndCulprit) {
-  const std::string text = profile_csv(data, lines);
-  const std::string at = std::to_string(line_with("innermost"));
+  const std::string text = profile_csv(data, lines, PollLoops());
+  const std::string at = std::to_string(line_with("innermost")), held = "outer|inlined.c;middle|inlined.c";
   const auto begin_line = std::to_string(lines.at(start).front().line);
   EXPECT_EQ(text,
-            "phase,function,file,line,cause,region,culprit,clocks,instructions\n"
-            "boot,_start,inlined.c," + begin_line + ",issue,,,7,5\n"
-            "frames,(unknown),,,interlock,none,core,10,0\n"
-            "frames,_start,inlined.c," + begin_line + ",issue,,,20,10\n"
-            "frames,_start,inlined.c," + begin_line + ",idle.capture,,,40,0\n"
-            "frames,innermost,inlined.c," + at + ",issue,,,100,50\n"
-            "frames,innermost,inlined.c," + at + ",dcache,\"sdram, slow\",service,300,0\n"
-            "frames,innermost,inlined.c," + at + ",dcache,\"sdram, slow\",core,30,0\n");
+            "phase,function,file,line,cause,region,culprit,clocks,instructions,inlined_in,polls\n"
+            "boot,_start,inlined.c," + begin_line + ",issue,,,7,5,,\n"
+            "frames,(unknown),,,interlock,none,core,10,0,,\n"
+            "frames,_start,inlined.c," + begin_line + ",issue,,,20,10,,\n"
+            "frames,_start,inlined.c," + begin_line + ",idle.capture,,,40,0,,\n"
+            "frames,innermost,inlined.c," + at + ",issue,,,100,50," + held + ",\n"
+            "frames,innermost,inlined.c," + at + ",dcache,\"sdram, slow\",service,300,0," + held + ",\n"
+            "frames,innermost,inlined.c," + at + ",dcache,\"sdram, slow\",core,30,0," + held + ",\n");
 }
 
 TEST_F(ProfileReportTest, FoldedStacks) {
@@ -256,6 +256,79 @@ TEST_F(ProfileReportTest, FunctionsLieWhereTheProgramHasThem) {
   EXPECT_THAT(text, HasSubstr(fmt::format("\n_start,inlined.c,0x{:08x},", start)));
   EXPECT_THAT(text, HasSubstr("\n(data),,,4,"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
+}
+
+/// Names of all functions of a program, as its call paths and the debugger have them.
+std::vector<std::string> names_of(const char* file, bool symbols) {
+  const ElfImage image = ElfImage::load(file);
+  SourceLines lines;
+  lines.add(image);
+  std::vector<std::string> out;
+  std::set<std::uint32_t> seen;
+  for (const ElfSymbol& s : image.symbols())
+    if (s.function && s.size && seen.insert(s.address).second)
+      out.push_back(symbols ? image.describe(s.address) : lines.function_text(s.address));
+  return out;
+}
+
+// Two classes, overloads, constructors and destructors, lambdas, and two files.
+TEST(FunctionNamesTest, NoTwoFunctionsHaveOneName) {
+  for (const char* file : {FIXTURE_NAMES, FIXTURE_NAMES_STRIPPED})
+    for (const bool symbols : {false, true}) {
+      const auto names = names_of(file, symbols);
+      const std::set<std::string> different(names.begin(), names.end());
+      EXPECT_EQ(different.size(), names.size()) << file;
+      for (const char* name :
+           {"A::step(int)", "B::step(int)", "Made::Made(int)", "Made::Made(Made const&)", "_start", "elsewhere",
+            "(anonymous namespace)::func(int)", "(anonymous namespace)::func(float)",
+            "_start::{lambda(int)#1}::operator()(int) const", "_start::{lambda(int)#2}::operator()(int) const",
+            "helper() (names.cpp)", "helper() (other_names.cpp)"})
+        EXPECT_TRUE(different.contains(name)) << name << ": " << testing::PrintToString(names);
+    }
+}
+
+// Deleting an object calls its destructor, which has the same name in the source.
+TEST(FunctionNamesTest, TheTwoDestructorsAreNoRecursion) {
+  const auto names = names_of(FIXTURE_NAMES, false);
+  EXPECT_EQ(std::count_if(names.begin(), names.end(), [](const auto& n) { return n.starts_with("Made::~Made()"); }), 2);
+}
+
+// Of those without a symbol the debug information has to tell the same.
+TEST(FunctionNamesTest, InlinedFunctionsHaveTheirScopesAndParameters) {
+  const ElfImage image = ElfImage::load(FIXTURE_NAMES);
+  SourceLines lines;
+  lines.add(image);
+  std::set<std::string> inlined;
+  for (const std::uint32_t a : code_of(image, "_start"))
+    if (lines.at(a).size() > 1) inlined.insert(lines.at(a).front().function);
+  EXPECT_EQ(inlined, (std::set<std::string>{"(anonymous namespace)::within(int)",
+                                            "(anonymous namespace)::within(char const*)",
+                                            "(anonymous namespace)::Local::inlined(unsigned int) const"}));
+}
+
+TEST(FunctionNamesTest, SymbolsAreFoundByBothNames) {
+  const ElfImage image = ElfImage::load(FIXTURE_NAMES);
+  ASSERT_TRUE(image.find("A::step(int)"));
+  EXPECT_EQ(image.find("A::step(int)"), image.find("_ZN1A4stepEi"));
+  EXPECT_NE(image.find("helper() (names.cpp)"), image.find("helper() (other_names.cpp)"));
+  EXPECT_EQ(demangled("_Zbad"), "_Zbad");
+  EXPECT_EQ(demangled("plain"), "plain");
+}
+
+TEST(PollLoopsTest, OnlyLoopsThatWaitAreFound) {
+  const ElfImage image = ElfImage::load(FIXTURE_POLLS);
+  const ElfImage* const programs[] = {nullptr, &image};
+  const PollLoops polls(programs);
+  unsigned functions = 0;
+  for (const ElfSymbol& s : image.symbols()) {
+    if (!s.function || s.size == 0) continue;
+    ++functions;
+    unsigned found = 0;
+    for (std::uint32_t a = s.address; a < s.address + s.size; a += 4) found += polls.contains(a);
+    EXPECT_EQ(found > 0, s.name.starts_with("wait_")) << s.name;
+    EXPECT_LT(found, s.size / 4) << s.name << ": the return is none of it";
+  }
+  EXPECT_EQ(functions, 11u);
 }
 
 /// callgrind_annotate, of Debian's valgrind, reads the file and finds the same sums.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace fovea::cpu {
 namespace {
@@ -247,18 +248,38 @@ void CallStacks::exception_return(std::uint64_t cycle, std::uint32_t target, std
   current_ = new_stack(target, sp, false);
 }
 
-std::vector<CallStacks::Path> CallStacks::paths() const {
+/// The clocks of the nodes go to the section that was current.
+void CallStacks::take() {
+  auto to = std::find_if(taken_.begin(), taken_.end(),
+                         [this](const Taken& t) { return t.section == section_ && t.counted == counting_; });
+  if (to == taken_.end()) to = taken_.insert(to, {section_, counting_, {}});
+  to->clocks.resize(nodes_.size());
+  for (std::size_t n = 1; n < nodes_.size(); ++n) to->clocks[n] += std::exchange(nodes_[n].clocks, 0);
+}
+
+template <class F>
+std::vector<CallStacks::Path> CallStacks::paths_if(F wanted) const {
   std::vector<Path> out;
   for (std::size_t n = 1; n < nodes_.size(); ++n) {
-    if (nodes_[n].clocks == 0) continue;
     Path path;
-    path.clocks = nodes_[n].clocks;
+    if (wanted(section_, counting_)) path.clocks = nodes_[n].clocks;
+    for (const Taken& t : taken_)
+      if (n < t.clocks.size() && wanted(t.section, t.counted)) path.clocks += t.clocks[n];
+    if (path.clocks == 0) continue;
     for (std::uint32_t k = static_cast<std::uint32_t>(n); k; k = nodes_[k].parent)
       path.functions.push_back(nodes_[k].function);
     std::reverse(path.functions.begin(), path.functions.end());
     out.push_back(std::move(path));
   }
   return out;
+}
+
+std::vector<CallStacks::Path> CallStacks::paths() const {
+  return paths_if([](std::size_t, bool counted) { return counted; });
+}
+
+std::vector<CallStacks::Path> CallStacks::paths_of(std::size_t section) const {
+  return paths_if([section](std::size_t of, bool) { return of == section; });
 }
 
 std::vector<CallStacks::Call> CallStacks::calls() const {

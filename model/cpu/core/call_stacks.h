@@ -45,9 +45,13 @@ class CallStacks {
   }
 
   /// Clocks up to here are counted or not, as before; those from here on are, or not.
-  void count(std::uint64_t cycle, bool on) {
+  void count(std::uint64_t cycle, bool on) { enter(cycle, on, section_); }
+  /// The same; those from here on belong to a section of the run.
+  void enter(std::uint64_t cycle, bool on, std::size_t section) {
     elapse(cycle);
+    if (on != counting_ || section != section_) take();
     counting_ = on;
+    section_ = section;
   }
 
   /// Receives which functions were active in each stretch between two branches.
@@ -66,6 +70,8 @@ class CallStacks {
   };
   /// What was counted, by call path; paths without clocks are left out.
   std::vector<Path> paths() const;
+  /// All clocks of a section, counted or not.
+  std::vector<Path> paths_of(std::size_t section) const;
   struct Call {
     std::uint32_t from = 0, to = 0;
     std::uint64_t count = 0, clocks = 0;  ///< clocks include those of further calls
@@ -84,7 +90,12 @@ class CallStacks {
   static constexpr std::size_t kSites = 1024, kMostStacks = 256;
   struct Node {
     std::uint32_t parent, function;
-    std::uint64_t clocks = 0;
+    std::uint64_t clocks = 0;  // since the last take()
+  };
+  struct Taken {
+    std::size_t section;
+    bool counted;
+    std::vector<std::uint64_t> clocks;  // by node
   };
   struct Counted {
     Call call;
@@ -119,13 +130,14 @@ class CallStacks {
   void elapse(std::uint64_t cycle) {
     if (!watchers_.empty()) [[unlikely]]
       tell(cycle);
-    if (counting_) {
-      nodes_[stacks_[current_].node].clocks += cycle - last_;
-      stacks_[current_].ran += cycle - last_;
-    }
+    nodes_[stacks_[current_].node].clocks += cycle - last_;
+    if (counting_) stacks_[current_].ran += cycle - last_;
     last_ = cycle;
   }
   void tell(std::uint64_t cycle);
+  void take();
+  template <class F>
+  std::vector<Path> paths_if(F wanted) const;
   void append(std::uint32_t node);
   Function function_at(std::uint32_t address) const;
   std::uint32_t child(std::uint32_t node, std::uint32_t function);
@@ -147,6 +159,8 @@ class CallStacks {
   std::vector<std::size_t> interrupted_;  // stacks, innermost last
   std::uint64_t last_ = 0;
   bool counting_ = true;
+  std::size_t section_ = 0;
+  std::vector<Taken> taken_;
   Observers<Watcher*> watchers_;
   std::vector<std::uint32_t> active_;  // for it
 };

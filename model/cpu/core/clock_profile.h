@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "model/common/observers.h"
@@ -75,15 +76,15 @@ class ClockProfile {
   /// The clocks from here on belong to a section. The caller has collected all lines.
   void enter(std::size_t section);
   std::size_t section() const { return section_; }
-  /// The section whose call stacks are counted; before the first instruction.
-  void count_stacks_of(std::size_t section) {
-    stacked_section_ = section;
-    stacks.count(0, section_ == section);
-    mask.count(section_ == section, 0, 0);
+  /// The sections whose calls are counted; before the first instruction.
+  void count_stacks_of(std::vector<std::size_t> sections) {
+    stacked_ = std::move(sections);
+    stacks.count(0, counts_stacks());
+    mask.count(counts_stacks(), 0, 0);
   }
-  bool counts_stacks() const { return section_ == stacked_section_; }
+  bool counts_stacks() const { return std::find(stacked_.begin(), stacked_.end(), section_) != stacked_.end(); }
   CallStacks stacks;
-  MaskWatch mask;  ///< in the same section
+  MaskWatch mask;  ///< in the same sections
 
   /// The core's counters at some instants of the run.
   struct Snapshot {
@@ -168,7 +169,8 @@ class ClockProfile {
   const Counts& counts_;
   bool open_ = false, given_away_ = false;
   std::uint64_t issue_seen_ = 0, instructions_seen_ = 0;
-  std::size_t section_ = 0, stacked_section_ = 0;
+  std::size_t section_ = 0;
+  std::vector<std::size_t> stacked_ = {0};
   std::vector<Section> sections_;
   std::deque<Mark> marks_;
   std::vector<Snapshot> snapshots_;

@@ -158,9 +158,12 @@ void Core::enter_section(std::size_t section) {
   ledger_.profile->end(regs_.pc);
   fetch_.collect_tallies();
   collected_ = ledger_.cycle;
+  const bool counted = ledger_.profile->counts_stacks();
   ledger_.profile->enter(section);
-  ledger_.profile->stacks.count(ledger_.cycle, ledger_.profile->counts_stacks());
-  ledger_.profile->mask.count(ledger_.profile->counts_stacks(), awake(), regs_.pc);
+  const bool counts = ledger_.profile->counts_stacks();
+  ledger_.profile->stacks.enter(ledger_.cycle, counts, section);
+  // A stretch may begin in one of the sections that count and end in the next.
+  if (counts != counted) ledger_.profile->mask.count(counts, awake(), regs_.pc);
   if (within) ledger_.profile->begin();
 }
 

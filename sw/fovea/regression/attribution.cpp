@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
@@ -18,8 +21,8 @@ const std::vector<std::string> kProfileColumns = {"phase",  "function", "file", 
                                                   "cause",  "region",   "culprit", "clocks",
                                                   "instructions"};
 const std::vector<std::string> kPlaceColumns = {"function", "file", "address", "size", "code"};
-/// The phase that the figures of a window cover.
-constexpr std::string_view kWindowPhase = "frames";
+const std::vector<std::string> kPathColumns = {"phase", "path", "clocks"};
+const std::vector<std::string> kObjectColumns = {"object", "address", "size"};
 constexpr double kAllowedGap = 0.01;
 
 double sum_of(const std::vector<AttributionRow>& rows) {
@@ -28,33 +31,97 @@ double sum_of(const std::vector<AttributionRow>& rows) {
   return sum;
 }
 
-std::vector<AttributionRow> read_profile(const fs::path& file) {
-  const TableFile table(file, kProfileColumns);
+/// The name in the source: without `.part.0`, `.constprop.1` or ` [clone .isra.0]`.
+std::string source_name(std::string name) {
+  if (const auto clone = name.find(" [clone "); clone != name.npos) name.resize(clone);
+  for (const char* const mark : {".part.", ".constprop.", ".isra.", ".cold", ".lto_priv."})
+    if (const auto at = name.find(mark); at != name.npos && at > 0) name.resize(at);
+  return name;
+}
+
+/// The place of the sources differs between hosts, so that folders only count where they tell functions apart.
+class FunctionKeys {
+ public:
+  void note(const std::string& function, const std::string& file) {
+    const fs::path path(file);
+    paths_[{source_name(function), path.filename().string()}].insert(path.string());
+  }
+  FunctionKey key(const std::string& function, const std::string& file) const {
+    FunctionKey out{source_name(function), fs::path(file).filename().string()};
+    const auto found = paths_.find(out);
+    if (found != paths_.end() && found->second.size() > 1) out.second = file;
+    return out;
+  }
+  /// Of "a|a.c;b|b.c".
+  std::vector<FunctionKey> path(const std::string& text) const {
+    std::vector<FunctionKey> out;
+    for (std::size_t from = 0; from < text.size();) {
+      const std::size_t end = std::min(text.find(';', from), text.size());
+      const std::string item = text.substr(from, end - from);
+      const std::size_t bar = std::min(item.rfind('|'), item.size());
+      out.push_back(key(item.substr(0, bar), bar < item.size() ? item.substr(bar + 1) : ""));
+      from = end + 1;
+    }
+    return out;
+  }
+
+ private:
+  std::map<FunctionKey, std::set<std::string>> paths_;
+};
+
+std::vector<AttributionRow> read_profile(const TableFile& table, const FunctionKeys& keys) {
   std::vector<AttributionRow> rows;
+  const bool more = table.has("inlined_in") && table.has("polls");
   for (std::size_t i = 0; i < table.rows(); ++i) {
     AttributionRow r;
     r.phase = table.text(i, "phase");
-    r.function = table.text(i, "function");
-    // The place of the sources differs between hosts.
-    r.file = fs::path(table.text(i, "file")).filename().string();
+    std::tie(r.function, r.file) = keys.key(table.text(i, "function"), table.text(i, "file"));
     r.line = static_cast<unsigned>(table.count(i, "line"));
     r.cause = table.text(i, "cause");
     r.region = table.text(i, "region");
     r.culprit = table.text(i, "culprit");
     r.clocks = table.count(i, "clocks");
     r.instructions = table.count(i, "instructions");
+    if (more) {
+      r.holders = keys.path(table.text(i, "inlined_in"));
+      r.polls = table.count(i, "polls") != 0;
+    }
     rows.push_back(std::move(r));
   }
   return rows;
 }
 
-std::map<FunctionKey, std::set<CodePlace>> read_places(const fs::path& file) {
+std::map<FunctionKey, std::set<CodePlace>> read_places(const fs::path& file, const FunctionKeys& keys) {
   const TableFile table(file, kPlaceColumns);
   std::map<FunctionKey, std::set<CodePlace>> places;
   for (std::size_t i = 0; i < table.rows(); ++i)
-    places[{table.text(i, "function"), fs::path(table.text(i, "file")).filename().string()}].insert(
+    places[keys.key(table.text(i, "function"), table.text(i, "file"))].insert(
         {table.text(i, "address"), table.text(i, "size"), table.text(i, "code")});
   return places;
+}
+
+std::vector<CallPath> read_paths(const fs::path& file, const FunctionKeys& keys) {
+  const TableFile table(file, kPathColumns);
+  std::vector<CallPath> out;
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    out.push_back({table.text(i, "phase"), keys.path(table.text(i, "path")), table.count(i, "clocks")});
+  return out;
+}
+
+std::vector<ObjectPlace> read_objects(const fs::path& file) {
+  const TableFile table(file, kObjectColumns);
+  std::vector<ObjectPlace> out;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const std::string& text = table.text(i, "address");
+    ObjectPlace o{table.text(i, "object"), 0, table.count(i, "size")};
+    const std::size_t digits = text.starts_with("0x") ? 2 : 0;
+    const auto [end, error] = std::from_chars(text.data() + digits, text.data() + text.size(), o.address, 16);
+    if (error != std::errc{} || end != text.data() + text.size())
+      throw UserError(fmt::format("'{}', row {}: '{}' is not an address", app::one_line(file.string()), i + 2,
+                                  app::one_line(text, 40)));
+    out.push_back(std::move(o));
+  }
+  return out;
 }
 
 std::vector<AttributionRow> read_stalls(const RunFigures& run) {
@@ -96,14 +163,71 @@ void join_waits(std::vector<AttributionRow>& rows) {
     if (r.cause.starts_with("wait.")) r.cause = event.empty() ? "wait" : "wait." + std::string(event);
 }
 
+bool in_window(const AttributionRow& r) { return r.phase == kFramesPhase || r.phase == kRemapPhase; }
+
 /// A profile may also hold what came before the window.
-void keep_window(std::vector<AttributionRow>& rows, double cycles) {
-  if (sum_of(rows) == cycles) return;
-  std::vector<AttributionRow> window;
-  std::copy_if(rows.begin(), rows.end(), std::back_inserter(window),
-               [](const AttributionRow& r) { return r.phase == kWindowPhase; });
-  if (!window.empty() && std::abs(sum_of(window) - cycles) < std::abs(sum_of(rows) - cycles))
-    rows = std::move(window);
+void divide(Attribution& out) {
+  if (sum_of(out.rows) == out.clocks) return;
+  std::vector<AttributionRow> window, before;
+  for (const AttributionRow& r : out.rows) (in_window(r) ? window : before).push_back(r);
+  if (window.empty() || std::abs(sum_of(window) - out.clocks) >= std::abs(sum_of(out.rows) - out.clocks)) return;
+  out.rows = std::move(window);
+  out.startup = std::move(before);
+}
+
+/// The time within remaps, by that of one.
+double remaps_of(const RunFigures& run, const Attribution& a) {
+  const double one = run.value("frame.remap_time.mean");
+  double clocks = 0;
+  for (const AttributionRow& r : a.rows)
+    if (r.phase == kRemapPhase) clocks += static_cast<double>(r.clocks);
+  return one > 0 && clocks > 0 && a.seconds > 0 ? clocks * a.seconds / one : run.value("frame.remapped");
+}
+
+void read_profile_files(const RunFigures& run, Attribution& out) {
+  std::error_code error;
+  const fs::path places = run.folder / "functions.csv", paths = run.folder / "paths.csv",
+                 objects = run.folder / "objects.csv";
+  const TableFile profile(run.folder / "profile.csv", kProfileColumns);
+  FunctionKeys keys;
+  for (std::size_t i = 0; i < profile.rows(); ++i) keys.note(profile.text(i, "function"), profile.text(i, "file"));
+  out.rows = read_profile(profile, keys);
+  divide(out);
+  out.by_function = std::any_of(out.rows.begin(), out.rows.end(),
+                                [](const AttributionRow& r) { return !r.function.empty(); });
+  if (fs::exists(places, error)) out.places = read_places(places, keys);
+  if (fs::exists(paths, error)) out.paths = read_paths(paths, keys);
+  if (fs::exists(objects, error)) out.objects = read_objects(objects);
+}
+
+std::string joined_path(const std::vector<FunctionKey>& path) {
+  std::string out;
+  for (const FunctionKey& f : path) out += (out.empty() ? "" : ";") + f.first + "|" + f.second;
+  return out;
+}
+
+/// Joins small rows of what came before the window, see kDetail.
+std::vector<AttributionRow> without_detail(const std::vector<AttributionRow>& rows) {
+  std::map<std::string, double> phases;
+  for (const AttributionRow& r : rows) phases[r.phase] += static_cast<double>(r.clocks);
+  using Key = std::tuple<std::string, FunctionKey, std::string, std::vector<FunctionKey>, bool>;
+  std::map<Key, AttributionRow> joined;
+  std::vector<AttributionRow> out;
+  for (const AttributionRow& r : rows) {
+    if (static_cast<double>(r.clocks) >= kDetail * phases[r.phase]) {
+      out.push_back(r);
+      continue;
+    }
+    AttributionRow& to = joined[{r.phase, r.key(), r.cause, r.holders, r.polls}];
+    const std::uint64_t clocks = to.clocks + r.clocks, instructions = to.instructions + r.instructions;
+    to = r;
+    to.line = 0;
+    to.region = to.culprit = "";
+    to.clocks = clocks;
+    to.instructions = instructions;
+  }
+  for (auto& [key, r] : joined) out.push_back(std::move(r));
+  return out;
 }
 
 }  // namespace
@@ -123,15 +247,11 @@ Attribution attribution_of(const RunFigures& run, bool profile) {
     out.seconds = window / out.clocks;
   const char* file = "profile.csv";
   if (profile && has_profile(run)) {
-    out.rows = read_profile(run.folder / file);
-    keep_window(out.rows, out.clocks);
-    out.by_function = std::any_of(out.rows.begin(), out.rows.end(),
-                                  [](const AttributionRow& r) { return !r.function.empty(); });
-    if (fs::exists(run.folder / "functions.csv", error))
-      out.places = read_places(run.folder / "functions.csv");
+    read_profile_files(run, out);
   } else if (file = "stalls.csv"; fs::exists(run.folder / file, error)) {
     out.rows = read_stalls(run);
   }
+  out.remaps = remaps_of(run, out);
   join_waits(out.rows);
   if (!out.rows.empty() && std::abs(out.sum() - out.clocks) > kAllowedGap * out.clocks)
     throw UserError(fmt::format("'{}' does not belong to stats.json: its rows have {:.0f} clocks, "
@@ -142,11 +262,38 @@ Attribution attribution_of(const RunFigures& run, bool profile) {
 }
 
 std::string attribution_csv(const Attribution& attribution) {
-  std::string out = table_row(kProfileColumns);
-  for (const auto& r : attribution.rows)
-    out += table_row({r.phase, r.function, r.file, r.line ? std::to_string(r.line) : "", r.cause,
-                      r.region, r.culprit, std::to_string(r.clocks),
-                      std::to_string(r.instructions)});
+  std::vector<std::string> columns = kProfileColumns;
+  columns.insert(columns.end(), {"inlined_in", "polls"});
+  std::string out = table_row(columns);
+  const auto add = [&out](const std::vector<AttributionRow>& rows) {
+    for (const auto& r : rows)
+      out += table_row({r.phase, r.function, r.file, r.line ? std::to_string(r.line) : "", r.cause, r.region,
+                        r.culprit, std::to_string(r.clocks), std::to_string(r.instructions), joined_path(r.holders),
+                        r.polls ? "1" : ""});
+  };
+  add(without_detail(attribution.startup));
+  add(attribution.rows);
+  return out;
+}
+
+std::string paths_csv(const Attribution& attribution) {
+  std::map<std::string, double> phases;
+  for (const CallPath& p : attribution.paths) phases[p.phase] += static_cast<double>(p.clocks);
+  std::map<std::pair<std::string, std::string>, std::uint64_t> sums;
+  for (const CallPath& p : attribution.paths)
+    if (static_cast<double>(p.clocks) >= kDetail * phases[p.phase] || p.functions.empty())
+      sums[{p.phase, joined_path(p.functions)}] += p.clocks;
+    else
+      sums[{p.phase, joined_path({p.functions.back()})}] += p.clocks;
+  std::string out = table_row(kPathColumns);
+  for (const auto& [path, clocks] : sums) out += table_row({path.first, path.second, std::to_string(clocks)});
+  return out;
+}
+
+std::string objects_csv(const Attribution& attribution) {
+  std::string out = table_row(kObjectColumns);
+  for (const ObjectPlace& o : attribution.objects)
+    out += table_row({o.name, fmt::format("0x{:08x}", o.address), std::to_string(o.size)});
   return out;
 }
 

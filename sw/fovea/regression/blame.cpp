@@ -1,26 +1,22 @@
 #include "sw/fovea/regression/blame.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
 
-#include "sw/fovea/outputs.h"
+#include "sw/fovea/regression/matching.h"
 
 namespace fovea::regression {
 namespace {
-
-using CauseKey = std::tuple<std::string, std::string, std::string>;
 
 /// One run's clocks of a function.
 struct Side {
   std::map<CauseKey, double> causes;
   std::map<unsigned, double> lines;
   std::map<unsigned, std::map<std::string, double>> line_causes;
-  double clocks = 0, instructions = 0;
+  double clocks = 0, instructions = 0, polls = 0;
   bool present = false;
 };
 
@@ -28,23 +24,24 @@ struct Pair {
   Side before, after;
 };
 
-void add_side(std::map<FunctionKey, Pair>& functions, Side Pair::*side,
-              const Attribution& attribution, bool by_function, double scale, double& busy,
-              double& idle) {
-  for (const auto& r : attribution.rows) {
-    const double amount = static_cast<double>(r.clocks) * scale;
+void add_side(std::map<FunctionKey, Pair>& functions, Side Pair::*side, const Part& part, bool by_function,
+              double& busy, double& idle) {
+  for (const AttributionRow* const row : part.rows) {
+    const AttributionRow& r = *row;
+    const double amount = static_cast<double>(r.clocks) * part.scale;
     if (r.idle()) {
       idle += amount;
       continue;
     }
     busy += amount;
-    Side& s = functions[by_function ? FunctionKey(r.function, r.file) : FunctionKey()].*side;
+    Side& s = functions[by_function ? r.key() : FunctionKey()].*side;
     s.present = true;
     s.causes[{r.cause, r.region, r.culprit}] += amount;
     s.lines[r.line] += amount;
     s.line_causes[r.line][r.cause] += amount;
     s.clocks += amount;
-    s.instructions += static_cast<double>(r.instructions);
+    if (r.polls) s.polls += amount;
+    s.instructions += static_cast<double>(r.instructions) * part.count;
   }
 }
 
@@ -148,6 +145,9 @@ FunctionChange change_of(const FunctionKey& key, const Pair& p, bool by_function
   if (!p.before.present) f.kind = ChangeKind::kAdded;
   else if (!p.after.present) f.kind = ChangeKind::kRemoved;
   else if (f.instructions_before != f.instructions_after) f.kind = ChangeKind::kExecutes;
+  if (const double polls = p.after.polls - p.before.polls;
+      polls != 0 && (polls > 0) == (f.share.change() > 0) && std::abs(polls) * 2 >= std::abs(f.share.change()))
+    f.kind = ChangeKind::kPolls;
   return f;
 }
 
@@ -208,20 +208,43 @@ bool other_clock(const Attribution& a, const Attribution& b) {
          a.seconds * (kSame + kEdges / a.clocks + kEdges / b.clocks);
 }
 
-std::string grouped(double value) { return app::grouped(static_cast<std::uint64_t>(std::llround(std::abs(value)))); }
+/// Another number of remaps in the window: what is compared is one of them.
+bool other_remaps(const Attribution& a, const Attribution& b) {
+  constexpr double kSame = 0.02;
+  return a.remaps > 0 && b.remaps > 0 && std::abs(a.remaps - b.remaps) > kSame * std::max(a.remaps, b.remaps);
+}
+
+bool in_part(const std::string& phase, RunPart part) {
+  switch (part) {
+    case RunPart::kRemap: return phase == kRemapPhase;
+    case RunPart::kLut: return phase == kLutPhase;
+    case RunPart::kWindow:
+    case RunPart::kStartup: break;
+  }
+  return true;
+}
+
+bool before_window(RunPart part) { return part == RunPart::kLut || part == RunPart::kStartup; }
+
+/// The rows and paths of a part.
+Part part_of(const Attribution& a, RunPart part) {
+  Part out;
+  for (const AttributionRow& r : before_window(part) ? a.startup : a.rows)
+    if (in_part(r.phase, part)) out.rows.push_back(&r);
+  std::set<std::string> phases;
+  for (const AttributionRow* const r : out.rows) phases.insert(r->phase);
+  for (const CallPath& p : a.paths)
+    if (phases.contains(p.phase)) out.paths.push_back(&p);
+  return out;
+}
+
+double clocks_of(const Part& part) {
+  double sum = 0;
+  for (const AttributionRow* const r : part.rows) sum += static_cast<double>(r->clocks);
+  return sum;
+}
 
 }  // namespace
-
-std::string kind_text(ChangeKind kind, bool more) {
-  switch (kind) {
-    case ChangeKind::kAdded: return "is new";
-    case ChangeKind::kRemoved: return "is gone";
-    case ChangeKind::kExecutes: return more ? "executes more" : "executes less";
-    case ChangeKind::kLayout: return "was moved (layout)";
-    case ChangeKind::kWaits: break;
-  }
-  return "same instructions";
-}
 
 double Difference::unexplained_share() const {
   const double whole = std::max(std::abs(total.change()), std::abs(busy.change()));
@@ -233,22 +256,44 @@ bool Difference::none() const {
   return total.change() == 0 && idle.change() == 0 && functions.empty();
 }
 
-Difference difference_of(const Attribution& before, const Attribution& after,
-                         const Circumstances& circumstances) {
+RunPart part_of_figure(const std::string& name) {
+  if (name == "startup.lut_time") return RunPart::kLut;
+  if (name.starts_with("startup.")) return RunPart::kStartup;
+  if (name.starts_with("frame.remap_time.") || name.starts_with("cpu.remap.")) return RunPart::kRemap;
+  return RunPart::kWindow;
+}
+
+Difference difference_of(const Attribution& was, const Attribution& after, const Circumstances& circumstances,
+                         RunPart part) {
+  const Attribution before = with_names_of(was, after);
   Difference d;
+  d.part = part;
+  Part a = part_of(before, part), b = part_of(after, part);
+  if (part == RunPart::kRemap && (a.rows.empty() || b.rows.empty())) {
+    d.part = RunPart::kWindow;
+    a = part_of(before, d.part);
+    b = part_of(after, d.part);
+  }
+  d.known = !a.rows.empty() && !b.rows.empty();
   d.by_function = before.by_function && after.by_function;
   d.program_differs = circumstances.program_differs;
   d.settings_differ = circumstances.settings_differ;
+  d.notes = circumstances.notes;
   d.in_seconds = other_clock(before, after);
-  const double scale_before = d.in_seconds ? before.seconds : 1;
-  const double scale_after = d.in_seconds ? after.seconds : 1;
+  d.per_remap = !before_window(d.part) && other_remaps(before, after);
+  d.remaps = after.remaps;
+  d.seconds = after.seconds;
+  if (d.per_remap) a.count = 1 / before.remaps, b.count = 1 / after.remaps;
+  a.scale = a.count * (d.in_seconds ? before.seconds : 1);
+  b.scale = b.count * (d.in_seconds ? after.seconds : 1);
   std::map<FunctionKey, Pair> functions;
-  add_side(functions, &Pair::before, before, d.by_function, scale_before, d.busy.before, d.idle.before);
-  add_side(functions, &Pair::after, after, d.by_function, scale_after, d.busy.after, d.idle.after);
-  d.total = {before.clocks * scale_before, after.clocks * scale_after};
+  add_side(functions, &Pair::before, a, d.by_function, d.busy.before, d.idle.before);
+  add_side(functions, &Pair::after, b, d.by_function, d.busy.after, d.idle.after);
+  const bool window = d.part == RunPart::kWindow;
+  d.total = {(window ? before.clocks : clocks_of(a)) * a.scale, (window ? after.clocks : clocks_of(b)) * b.scale};
   d.unexplained = d.total.change() - (d.busy.change() + d.idle.change());
-  // In seconds the sums are rounded.
-  if (d.in_seconds && std::abs(d.unexplained) < 1e-9 * d.total.after) d.unexplained = 0;
+  // Amounts that are not whole numbers are rounded.
+  if ((d.in_seconds || d.per_remap) && std::abs(d.unexplained) < 1e-9 * d.total.after) d.unexplained = 0;
   for (const auto& [key, pair] : functions) {
     FunctionChange f = change_of(key, pair, d.by_function);
     if (!f.causes.empty() || f.instructions_before != f.instructions_after)
@@ -256,105 +301,9 @@ Difference difference_of(const Attribution& before, const Attribution& after,
   }
   find_layout(d, before.places, after.places);
   largest_first(d.functions);
+  if (d.by_function && d.program_differs && !d.settings_differ) d.origins = origins_of(before, a, after, b);
+  d.moved_objects = moved_objects_text(before, after);
   return d;
-}
-
-Blame blame_of(const Difference& difference, bool slower) {
-  const auto worst = [slower](const auto& changes) {
-    const auto amount = [slower](const auto& c) { return c.share.change() * (slower ? 1 : -1); };
-    const auto found = std::max_element(changes.begin(), changes.end(), [&](const auto& a, const auto& b) {
-      return amount(a) < amount(b);
-    });
-    return found != changes.end() && amount(*found) > 0 ? &*found : nullptr;
-  };
-  Blame blame;
-  blame.function = worst(difference.functions);
-  if (!blame.function) return blame;
-  // With another program and the same settings, whoever executes something else is the origin; the
-  // others only wait, in small amounts up and down, for what it does to caches and memory.
-  if (difference.program_differs && !difference.settings_differ) {
-    constexpr double kOrigin = 0.25;  // of the whole change; less is a by-product itself
-    for (const auto& f : difference.functions) {
-      const double amount = f.share.change() * (slower ? 1 : -1);
-      if ((f.kind == ChangeKind::kExecutes || f.kind == ChangeKind::kAdded) &&
-          amount >= kOrigin * std::abs(difference.busy.change()) && amount > 0) {
-        blame.function = &f;  // the largest change comes first
-        break;
-      }
-    }
-  }
-  std::map<std::string, double> by_cause;
-  for (const auto& c : blame.function->causes) by_cause[c.cause] += c.share.change();
-  std::string most;
-  for (const auto& [cause, change] : by_cause)
-    if (const double amount = change * (slower ? 1 : -1); amount > std::abs(blame.by_cause)) {
-      blame.by_cause = change;
-      most = cause;
-    }
-  for (const auto& c : blame.function->causes)  // the largest change comes first
-    if (c.cause == most && (c.share.change() > 0) == slower && !blame.cause) blame.cause = &c;
-  blame.line = worst(blame.function->lines);
-  // Rather the line at which that cause grew than one at which others did.
-  double grew = 0;
-  for (const auto& line : blame.function->lines)
-    if (const auto found = line.causes.find(most); found != line.causes.end())
-      if (const double amount = found->second * (slower ? 1 : -1); amount > grew) {
-        grew = amount;
-        blame.line = &line;
-      }
-  return blame;
-}
-
-std::string amount_text(const Difference& difference, double amount) {
-  const char* const sign = amount < 0 ? "-" : "+";
-  if (difference.in_seconds) return sign + app::human_text(std::abs(amount), "s");
-  return sign + grouped(amount) + " clocks";
-}
-
-std::string cause_text(const CauseChange& cause, const std::string& extent) {
-  std::string where;
-  if (!cause.region.empty() && cause.region != "none") where += ", region " + cause.region;
-  if (!cause.culprit.empty() && cause.culprit != "core") where += ", culprit " + cause.culprit;
-  return where.empty() ? cause.cause : cause.cause + ", " + extent + where.substr(2);
-}
-
-std::string place_text(const FunctionChange& function, const LineChange* line) {
-  if (function.function.empty()) return "the program";
-  std::string place = function.file;
-  if (line && line->after.value_or(line->before.value_or(0)))
-    place += fmt::format(":{}", line->after.value_or(line->before.value_or(0)));
-  return place.empty() ? function.function : fmt::format("{} ({})", function.function, place);
-}
-
-/// For a difference without more clocks: whoever executes more all the same.
-static std::string more_instructions(const Difference& difference) {
-  const auto more = [](const FunctionChange& f) { return f.instructions_after - f.instructions_before; };
-  const auto most = std::max_element(
-      difference.functions.begin(), difference.functions.end(),
-      [&](const auto& a, const auto& b) { return more(a) < more(b); });
-  if (most == difference.functions.end() || more(*most) <= 0) return "";
-  return fmt::format("{} executes {} instructions more, which take no more clocks in all",
-                     place_text(*most, nullptr), grouped(more(*most)));
-}
-
-std::string blame_text(const Difference& difference, const Blame& blame) {
-  if (!blame.function) return more_instructions(difference);
-  const FunctionChange& f = *blame.function;
-  const double whole = difference.busy.change();
-  std::string out = place_text(f, blame.line);
-  if (difference.by_function)
-    out += " " + (f.kind == ChangeKind::kWaits
-                      ? std::string("waits with the same instructions")
-                      : kind_text(f.kind, f.instructions_after > f.instructions_before));
-  out += ": " + amount_text(difference, f.share.change());
-  if (whole != 0 && (whole > 0) == (f.share.change() > 0))
-    out += fmt::format(" ({:.0f} % of the change)", 100 * f.share.change() / whole);
-  if (blame.cause) {
-    const bool alone = blame.by_cause == blame.cause->share.change();
-    out += fmt::format(", of which {} by {}", amount_text(difference, blame.by_cause),
-                       cause_text(*blame.cause, alone ? "" : "mostly "));
-  }
-  return out;
 }
 
 }  // namespace fovea::regression

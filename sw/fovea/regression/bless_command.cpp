@@ -51,7 +51,9 @@ bool write_reference(const fs::path& folder, const RunFigures& run, const Baseli
   if (folder.empty()) return false;
   if (!changed && fs::exists(folder / "figures.csv", error)) {
     const Attribution had = attribution_of(read_reference(baseline), true), has = attribution_of(run, true);
-    if (had.by_function >= has.by_function && had.places.empty() <= has.places.empty()) return false;
+    if (had.by_function >= has.by_function && had.places.empty() <= has.places.empty() &&
+        had.startup.empty() <= has.startup.empty())
+      return false;
   }
   if (!may_hold_reference(folder))
     throw UserError(

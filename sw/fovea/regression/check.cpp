@@ -7,6 +7,7 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/regression/check_blame.h"
 #include "sw/fovea/regression/compare.h"
 
 namespace fovea::regression {
@@ -150,10 +151,10 @@ CheckResult check_run(const RunFigures& run, const Baseline& baseline, bool acro
   Attribution before = attribution_of(reference, true), after = attribution_of(run, true);
   level_clocks(reference, run, before, after);
   if (before.rows.empty() || after.rows.empty()) return out;
-  out.difference = difference_of(before, after, circumstances_of(reference, run));
-  const Blame blame = blame_of(*out.difference, true);
-  out.blame = blame_text(*out.difference, blame);
-  if (blame.function) out.blamed = place_text(*blame.function, blame.line);
+  CheckBlame blame = blame_failures(out.findings, before, after, circumstances_of(reference, run));
+  out.difference = std::move(blame.difference);
+  out.blame = std::move(blame.text);
+  out.blamed = std::move(blame.place);
   out.advice = advice_text(run, before, after);
   return out;
 }

@@ -117,6 +117,12 @@ Circumstances circumstances_of(const RunFigures& before, const RunFigures& after
         other->second.value != p.value)
       out.settings_differ = true;
   }
+  for (const char* const cache : {"icache", "dcache"}) {
+    // Without a cache there are no line fills; of programs without these nothing is known.
+    const std::string fills = std::string("cpu.") + cache + (cache[0] == 'i' ? ".accesses" : ".reads");
+    if (before.value(fills) > 0 && after.metric("cpu.cycles") && after.value(fills) == 0)
+      out.notes.push_back(fmt::format("the {}-cache is off", cache[0] == 'i' ? 'I' : 'D'));
+  }
   return out;
 }
 
@@ -191,7 +197,19 @@ Comparison compare_runs(const RunFigures& before, const RunFigures& after,
   level_clocks(before, after, a, b);
   if (!a.rows.empty() && !b.rows.empty())
     out.difference = difference_of(a, b, circumstances_of(before, after));
+  if (!a.startup.empty() && !b.startup.empty())
+    for (const MetricChange& m : out.changes)
+      if (m.difference() && (m.name == "startup.lut_time" || m.name == "startup.first_frame"))
+        out.startup.push_back(difference_of(a, b, circumstances_of(before, after), part_of_figure(m.name)));
   return out;
+}
+
+/// The sentence about the largest change; empty if it is within the tolerance.
+static std::string largest_text(const Difference& d, const Tolerance& tolerance) {
+  const bool slower = d.busy.change() >= 0;
+  const Blame blame = blame_of(d, slower);
+  if (!blame.function || std::abs(blame.function->share.change()) <= tolerance.allowed(d.busy.before)) return "";
+  return fmt::format("{}: {}\n", slower ? "largest slow-down" : "largest speed-up", blame_text(d, blame));
 }
 
 std::string difference_text(const Difference& d, std::size_t rows) {
@@ -199,8 +217,9 @@ std::string difference_text(const Difference& d, std::size_t rows) {
     return amount_text(d, s.change()) +
            (s.before ? " (" + percent_text(s.change() / s.before) + ")" : "");
   };
-  std::string out = fmt::format("where the {} went: all {}, busy {}, idle {}\n",
-                                d.in_seconds ? "time of the core" : "core's clocks",
+  const std::string part = part_text(d.part);
+  std::string out = fmt::format("where the {}{} went: all {}, busy {}, idle {}\n",
+                                d.in_seconds ? "time of the core" : "core's clocks", part.empty() ? "" : " " + part,
                                 share(d.total), share(d.busy), share(d.idle));
   if (d.in_seconds) out += "  (as time, because the clocks of the two cores have other lengths)\n";
   struct Line {
@@ -290,12 +309,10 @@ std::string comparison_text(const Comparison& c, const Tolerance& tolerance, boo
     out += fmt::format("different: {} of {} figures{}\n", c.changes.size(), c.compared, within) + figures_text(c, all);
   if (c.difference && !c.difference->none()) {
     out += difference_text(*c.difference, all ? SIZE_MAX : 12);
-    const bool slower = c.difference->busy.change() >= 0;
-    const Blame blame = blame_of(*c.difference, slower);
-    if (blame.function)
-      out += fmt::format("{}: {}\n", slower ? "largest slow-down" : "largest speed-up",
-                         blame_text(*c.difference, blame));
+    out += largest_text(*c.difference, tolerance);
   }
+  for (const Difference& d : c.startup)
+    if (!d.none()) out += largest_text(d, tolerance);
   return out;
 }
 

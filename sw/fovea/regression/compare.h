@@ -35,6 +35,7 @@ struct Comparison {
   std::vector<MetricChange> changes;  ///< beyond the tolerance; sorted by name
   SettingChanges settings;
   std::optional<Difference> difference;
+  std::vector<Difference> startup;    ///< of the parts before the window whose time changed
 };
 
 /// What differs in the circumstances of two results: simulator, parameters, inputs; and the same as one list.

@@ -25,6 +25,8 @@ std::map<std::string, std::string> reference_files(const RunFigures& run) {
   const Attribution attribution = attribution_of(run, true);
   out["profile.csv"] = attribution_csv(attribution);
   if (!attribution.places.empty()) out["functions.csv"] = places_csv(attribution);
+  if (!attribution.paths.empty()) out["paths.csv"] = paths_csv(attribution);
+  if (!attribution.objects.empty()) out["objects.csv"] = objects_csv(attribution);
   return out;
 }
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
@@ -223,6 +225,11 @@ std::vector<ProfileRow> read_profile(const fs::path& file) {
     if (at.line > 1)
       rows.push_back({f[0], f[1], f[2], f[3], f[4], f[5], f[6], whole(at, f[7]), whole(at, f[8])});
   });
+  // Functions of one name in two files are two.
+  std::map<std::string, std::set<std::string>> files;
+  for (const ProfileRow& r : rows) files[r.function].insert(r.file);
+  for (ProfileRow& r : rows)
+    if (!r.file.empty() && files[r.function].size() > 1) r.function += " (" + r.file + ")";
   return rows;
 }
 

@@ -295,7 +295,7 @@ std::vector<explain::FunctionClocks> functions_of(const Results& run) {
                                   [](const ProfileRow& r) { return r.phase == "frames"; });
   std::map<std::string, explain::FunctionClocks> sums;
   for (const auto& r : *run.profile) {
-    if (frames && r.phase != "frames") continue;
+    if (frames && r.phase != "frames" && r.phase != "remap") continue;
     explain::FunctionClocks& f = sums[r.function];
     f.name = r.function;
     f.clocks += static_cast<double>(r.clocks);
