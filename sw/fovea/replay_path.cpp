@@ -302,6 +302,7 @@ void ReplayPath::submit_transfer(unsigned stream) {
   TransferRequest request = s.record.transfer;
   request.number = s.number;
   const bool moves = request.bytes() != 0;
+  masters_[index(edma_read(s.controller))].at_recorded_time += s.record.release == trace::Release::kAt && s.number > 0;
   s.history[s.number++ % kHistory] = {now, moves ? kNever : now, moves ? kNever : now};
   s.earliest = now;
   next_request_ = scr_.edge(scr_.edge_after(now) + info_.edma.request_clocks - 1);

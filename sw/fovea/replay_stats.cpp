@@ -27,10 +27,11 @@ std::vector<StatRow> ReplayPath::stats() {
     const MasterState* one = nullptr;
     for (const MasterState& m : masters_) {
       if (m.label != label) continue;
+      const bool keeps = trace::keeps_times(info_, static_cast<Master>(&m - masters_.data()));
       read += m.read_bytes;
       write += m.write_bytes;
       transactions += m.transactions;
-      recorded += m.at_recorded_time;
+      recorded += keeps ? m.transactions : m.at_recorded_time;
       one = &m;
     }
     const std::string bus = "bus." + label + ".";
@@ -39,7 +40,8 @@ std::vector<StatRow> ReplayPath::stats() {
     rows.push_back({bus + "transactions", transactions, "1", "requests of " + label});
     rows.push_back({bus + "at_recorded_time", recorded, "1",
                     "of these, those that the trace lets go at the time at which they were recorded, whatever the "
-                    "memory does; of a video port the pixels' clock says when"});
+                    "memory does, and all of a master whose start the trace does not know; of a video port the pixels' "
+                    "clock says when"});
     collect(*one->latency, rows);
     if (memory_only_) continue;  // only the crossbar knows of all waits
     add_wait_rows(label, &MasterWaits::read, "read", rows);
