@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""What pages name in code exists in the program: its commands and options where a line or span begins with `fovea`, keys
-of parameters and names of figures anywhere. Usage: page_names.py FOVEA SOURCE BUILD OUT [PAGE...]: all pages of SOURCE, and these.
+"""What pages name in code exists in the program: its commands and options where a line or span begins with `fovea`,
+keys of parameters and names of figures anywhere.
+Usage: page_names.py FOVEA SOURCE BUILD OUT [PAGE...]: all pages of SOURCE, and these, which are named
+without their folder.
 
 A name of figures or keys is two or more words with dots between them whose first one begins a key or a figure. A star
 and a word in capitals stand for anything, a number for any other."""
@@ -11,24 +13,20 @@ import sys
 from pathlib import Path
 
 # Endings of files, which look like names: `stats.json`.
-FILES = set("bin c callgrind cc cfg cmake conf cpp csv dat elf f folded h html ini input json ld log md mp4 png py rstl s sh "
-            "stl sv trace txt xml yaml".split())
+FILES = set("bin c callgrind cc cfg cmake conf cpp csv dat elf f folded h html ini input json ld log md mp4 png py rstl "
+            "s sh stl sv trace txt xml yaml".split())
 NAME = re.compile(r"(?<![\w./-])([a-z]\w*(?:\.[A-Za-z_*][\w*]*)+)(?![\w/(.])")
 # Runs that have all kinds of figures between them.
 RUNS = {
     "engine": ["run", "{small}", "--no-frames", "--profile", "--bus-trace", "{trace}", "-s", "engine=both_tlm",
-               "-s", "firmware.kernel=engine"],
-    "cameras": ["run", "{small}", "--no-frames", "-s", "cameras.count=2"],
+               "-s", "firmware.kernel=engine", "-s", "cameras.count=2"],
     "lines": ["run", "{lines}", "--no-frames"],
-    "pixels": ["run", "{pixels}", "--no-frames"],
     "replay": ["replay", "{trace}"],
 }
 EXPERIMENTS = {
     "small": "run: {frames: 2, start_limit: 3s}\ncamera: {kind: chart, stamp: false}\nvideo: {width: 64, height: 16}\n",
     "lines": "run: {frames: 1, start_limit: 3s}\ncamera: {kind: lines, lens: equisolid, stamp: false}\n"
              "lens: {mapping: equisolid}\nvideo: {width: 320, height: 240}\nfirmware: {lut: fixed_point}\n",
-    "pixels": "run: {frames: 1, start_limit: 3s}\ncamera: {kind: bars, stamp: false}\nlens: {mapping: none}\n"
-              "video: {width: 320, height: 240}\nfirmware: {lut: fixed_point}\n",
 }
 
 
@@ -130,9 +128,8 @@ def code_of(page):
             yield from ((number, span) for span in re.findall(r"`([^`]+)`", line))
 
 
-def complaints(program, source, pages):
-    for page in pages:
-        name = page.relative_to(source).as_posix() if page.is_relative_to(source) else page.name
+def complaints(program, pages):
+    for page, name in pages:
         for number, code in code_of(page):
             if call := re.match(r"(?:build/release/|\./)?(fovea( [^|;&>]*)?)(?=$|[|;&>])", code):
                 for fault in program.call(call[1]):
@@ -146,11 +143,11 @@ def complaints(program, source, pages):
 def main(fovea, source, build, out, *pages):
     source, out = Path(source), Path(out)
     out.mkdir(parents=True, exist_ok=True)
-    pages = [Path(p) for p in pages] + [
-        p for p in sorted(source.rglob("*.md"))
+    pages = [(Path(p), Path(p).name) for p in pages] + [
+        (p, p.relative_to(source).as_posix()) for p in sorted(source.rglob("*.md"))
         if p.name != "CHANGELOG.md" and p.relative_to(source).parts[0] not in ("build", "out")
         and not any(part.startswith(".") for part in p.relative_to(source).parts)]
-    found = list(complaints(Program(fovea, source, build, out), source, pages))
+    found = list(complaints(Program(fovea, source, build, out), pages))
     print("\n".join(found) or "pages: every name exists")
     return bool(found)
 
