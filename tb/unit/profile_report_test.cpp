@@ -258,16 +258,16 @@ TEST_F(ProfileReportTest, FunctionsLieWhereTheProgramHasThem) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
 }
 
-/// Names of all functions of a program, as its call paths and the debugger have them.
+/// Names of all functions of a program, as its call paths and the debugger have them. Further entries of a function, such
+/// as those of the comparisons in libgcc, which run into each other, are none of their own.
 std::vector<std::string> names_of(const char* file, bool symbols) {
   const ElfImage image = ElfImage::load(file);
+  const ElfImage* const programs[] = {&image};
   SourceLines lines;
   lines.add(image);
   std::vector<std::string> out;
-  std::set<std::uint32_t> seen;
-  for (const ElfSymbol& s : image.symbols())
-    if (s.function && s.size && seen.insert(s.address).second)
-      out.push_back(symbols ? image.describe(s.address) : lines.function_text(s.address));
+  for (const auto& f : program_functions(programs))
+    out.push_back(symbols ? image.describe(f.begin) : lines.function_text(f.begin));
   return out;
 }
 
@@ -277,7 +277,8 @@ TEST(FunctionNamesTest, NoTwoFunctionsHaveOneName) {
     for (const bool symbols : {false, true}) {
       const auto names = names_of(file, symbols);
       const std::set<std::string> different(names.begin(), names.end());
-      EXPECT_EQ(different.size(), names.size()) << file;
+      EXPECT_EQ(different.size(), names.size()) << file << ": " << testing::PrintToString(names);
+      EXPECT_GE(names.size(), 15u) << file;
       for (const char* name :
            {"A::step(int)", "B::step(int)", "Made::Made(int)", "Made::Made(Made const&)", "_start", "elsewhere",
             "(anonymous namespace)::func(int)", "(anonymous namespace)::func(float)",
