@@ -346,7 +346,7 @@ TEST_F(ReferenceTest, BlessingRefusesWhatItWouldHide) {
   EXPECT_THAT(error("cpu.cycles: {value: 1, unit: s}"), HasSubstr("unit"));
 }
 
-// A third of the letters may be wrong, and two of a short name.
+// A third of the letters may be wrong, and two of a short name; an end that was forgotten counts as one letter.
 TEST(NearestMetricTest, IsTheOneWithTheFewestChanges) {
   const auto nearest = [](const std::string& name, const std::vector<std::string>& names) {
     RunFigures run;
@@ -359,7 +359,8 @@ TEST(NearestMetricTest, IsTheOneWithTheFewestChanges) {
   EXPECT_EQ(nearest("abcdefghi", {"abcdeVXYZ"}), "");
   EXPECT_EQ(nearest("abcdef", {"abcd"}), "abcd");
   EXPECT_EQ(nearest("abcd", {"abcdef"}), "abcdef");
-  EXPECT_EQ(nearest("abcd", {"abcdefg"}), "");
+  EXPECT_EQ(nearest("efgh", {"abcefgh"}), "");
+  EXPECT_EQ(nearest("abcd", {"abcdefg"}), "abcdefg");
   EXPECT_EQ(nearest("abcdef", {"abXYef", "abcdeX", "abcXYf"}), "abcdeX");
 }
 

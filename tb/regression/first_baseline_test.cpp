@@ -289,7 +289,8 @@ TEST_F(FirstBaselineTest, FiveLinesForAMergeRequest) {
   odd.profile.replace(odd.profile.find("lut,vpbe"), 3, "l*<b>|");
   cli({"check", odd.write(dir, "odd").string(), "--against", base, "--markdown", "-"});
   EXPECT_THAT(out.str(), HasSubstr(R"(region l\*\<b\>\|)"));
-  EXPECT_EQ(std::count(out.str().begin(), out.str().end(), '\n'), 5);
+  const std::string lines = out.str();
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 5) << lines;
 }
 
 TEST_F(FirstBaselineTest, WordsOfCheckThatDoNotGoTogether) {

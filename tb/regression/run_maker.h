@@ -53,12 +53,13 @@ struct RunMaker {
       stats += fmt::format(",\n  \"{}\": {{\"value\": {}, \"unit\": \"{}\", \"description\": \"d\"}}", metric,
                            value.first, value.second);
     if (!no_stats) dir.write(name + "/stats.json", stats + "\n}\n");
+    // A folder of an earlier call keeps nothing.
+    for (const char* file : {"stalls.csv", "profile.csv", "functions.csv", "paths.csv", "objects.csv"})
+      std::filesystem::remove(dir / (name + "/" + file));
     if (!stalls.empty()) dir.write(name + "/stalls.csv", "cause,region,culprit,cycles\n" + stalls);
     if (!profile.empty())
       dir.write(name + "/profile.csv", "phase,function,file,line,cause,region,culprit,clocks,instructions" +
                                            std::string(chains ? ",inlined_in,polls\n" : "\n") + profile);
-    for (const char* file : {"functions.csv", "paths.csv", "objects.csv"})
-      std::filesystem::remove(dir / (name + "/" + file));
     if (!paths.empty()) dir.write(name + "/paths.csv", "phase,path,clocks\n" + paths);
     if (!objects.empty()) dir.write(name + "/objects.csv", "object,address,size\n" + objects);
     if (!functions.empty()) dir.write(name + "/functions.csv", "function,file,address,size,code\n" + functions);
