@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # A first baseline that one can live with: programs that differ in nothing but their layout pass it, a remap that is a
 # little more than one per cent slower does not, and neither does a later first frame.
-# Usage: first_baseline.sh FOVEA BUILD SOURCE OUT KERNEL...
+# Usage: first_baseline.sh FOVEA BUILD SOURCE OUT few|all KERNEL...; few: one variant of each kind
 set -uo pipefail
-fovea=$1 build=$2 source=$3 out=$4
-shift 4
+fovea=$1 build=$2 source=$3 out=$4 variants=$5
+shift 5
 rm -rf "$out"
 mkdir -p "$out"
 failures=0
@@ -53,7 +53,12 @@ objects=$(grep -- ' -o .*fovea_firmware.elf' "$out/commands" | grep -o '[^ ]*fov
 relinked order "s#$(echo $objects | sed 's/[.]/\\./g')#$(tac <<<"$objects" | tr '\n' ' ')#"
 cmp -s "$out/base.elf" "$out/order.elf" && fail 'order: the same program'
 firmware string app/main.c "s/running/now running/"
-for bytes in 32 4096; do
+case $variants in
+  few) variants='dead_before order string text32' ;;
+  all) variants='dead_before dead_behind order string text32 text4096' ;;
+  *) fail "'$variants' is neither few nor all" ;;
+esac
+for bytes in $(grep -o 'text[0-9]*' <<<"$variants" | tr -d tex); do
   firmware "text$bytes" kernels/remap_plain.c \
     "s/^void remap_plain/__asm__(\".section .text.remap_plain\\\\n .space $bytes\\\\n .text\");\\n&/"
 done
@@ -61,8 +66,6 @@ done
 for kernel; do
   run base "$kernel" || exit 1
   first "$kernel" base
-  variants='order text32' # those that moved the figures of other kernels most
-  [ "$kernel" = plain ] && variants='dead_before dead_behind order string text32 text4096'
   for harmless in $variants; do
     run "$harmless" "$kernel" && [ "$(status "$kernel" "$harmless")" = 0 ] ||
       fail "$kernel, $harmless: a false alarm: $(cat "$out/$kernel.$harmless.check")"
@@ -87,7 +90,7 @@ P
 judge() { turned "$1" && run "turns$1" plain && judged=$(status plain "turns$1" turns1); }
 turned 1 && run turns1 plain || exit 1
 first plain turns1
-n=1 high=33 # the first passes, the second must not
+n=1 high=33 # the first passes, the second must not; turns are not of equal length, because some hide behind writes
 judge $high && [ "$judged" = 1 ] || fail "$high turns pass"
 while [ $((high - n)) -gt 1 ]; do
   middle=$(((n + high) / 2))
@@ -98,7 +101,6 @@ base=$(figure "$out/plain.turns1" frame.remap_time.mean)
 more=$(figure "$out/plain.turns$((n + 1))" frame.remap_time.mean)
 echo "$n turns pass; $((n + 1)) turns are $(awk -v a="$base" -v b="$more" 'BEGIN { printf "%.3f", 100 * (b / a - 1) }') % more and fail"
 awk -v a="$base" -v b="$more" 'BEGIN { exit !(b > 1.01 * a && b < 1.02 * a) }' || fail 'the step is not at one per cent'
-[ "$(status plain "turns$n" turns1)" = 0 ] && [ "$(status plain "turns$((n + 1))" turns1)" = 1 ] || fail "$n turns: no step"
 grep -q 'FAILED  frame.remap_time' "$out/plain.turns$((n + 1)).check" || fail "$(cat "$out/plain.turns$((n + 1)).check")"
 
 # A start that is longer than the wait for the camera.
