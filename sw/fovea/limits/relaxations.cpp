@@ -202,7 +202,8 @@ std::string noun(std::string_view who) {
 }
 
 /// Each master but the core, whose traffic is left out of a replay: by what people call it, or by its own
-/// name where several are called the same. Synthetic loads have relaxations by parameter.
+/// name where several are called the same. Synthetic loads have relaxations by parameter. A replay refuses to leave
+/// out transfers that others wait for.
 void add_masters(const points::PointResult& plain, std::vector<Relaxation>& out) {
   for (std::size_t stat = 0; stat < kStatCount; ++stat) {
     const MasterInfo& row = master_info(master_of_stat(stat));
@@ -217,6 +218,7 @@ void add_masters(const points::PointResult& plain, std::vector<Relaxation>& out)
                         : fmt::format("{}'s traffic", row.who),
                  "without it", true, {}, {"--without", std::string(row.statistics)}, {}};
     if (!busy(plain, row.statistics)) r.idle = "no traffic";
+    else if (row.pace == Pace::kTransfers) r.idle = "the core waits for its transfers: no replay can leave them out";
     out.push_back(std::move(r));
   }
 }
