@@ -65,7 +65,7 @@ struct SlowRequest {
 class SlowRequestTeller {
  public:
   virtual ~SlowRequestTeller() = default;
-  /// Adds the request's place in the SDRAM and, of a read, the steps up to its column command.
+  /// Adds the request's place in the SDRAM and, of a read, the steps until its data are on the crossbar.
   virtual void tell(SlowRequest& s) const = 0;
 };
 

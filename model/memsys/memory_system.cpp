@@ -190,7 +190,7 @@ inline void MemorySystem::handle_read(const mem::DdrController::ReadOutcome& rea
 
 void MemorySystem::tell(SlowRequest& s) const {
   controller_.tell_place(s.address - map_.ddr_base, s);
-  if (read_) controller_.tell_waits(read_->column, s);
+  if (read_) controller_.tell_waits(*read_, s);
 }
 
 void MemorySystem::handle_acceptance(const mem::DdrController::Acceptance& accepted) {

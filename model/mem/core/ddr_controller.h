@@ -101,8 +101,10 @@ class DdrController {
     s.bank = bank_of(offset);
     s.row = row_of(offset);
   }
-  /// How a read found its row, and the steps up to its first column command.
-  void tell_waits(const WaitAttribution::Column& c, SlowRequest& s) const { attribution_.tell(c, s); }
+  /// How a read found its row, and the steps until its data are on the crossbar.
+  void tell_waits(const ReadOutcome& read, SlowRequest& s) const {
+    attribution_.tell(read.column, read.attributed, read.first, s);
+  }
 
   /// A master's newest read that has no outcome yet; null: there is none.
   const MemRequest* newest_read(Master master) const;

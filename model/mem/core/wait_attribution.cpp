@@ -98,7 +98,9 @@ template <class Charge>
             [&](Culprit c, Picoseconds t, Picoseconds) { charge(e.request, c, t); });
 }
 
-void WaitAttribution::tell(const Column& c, SlowRequest& s) const {
+void WaitAttribution::tell(const Column& c, Picoseconds attributed, Picoseconds first, SlowRequest& s) const {
+  // The clock has restarted since, while its data waited for older ones: edges have no times any more.
+  if (c.clock < first_edge_) return s.until(first, RequestPlace::kController, Culprit::kCount);
   Column seen = c;
   seen.ready = std::max(c.ready, first_edge_);
   const std::uint64_t oldest = issued_ - std::min<std::uint64_t>(issued_, kHistory - 1);
@@ -107,9 +109,12 @@ void WaitAttribution::tell(const Column& c, SlowRequest& s) const {
     if (command(p - 1).cmd == Cmd::kPre) s.found = FoundRow::kOther;
   const Picoseconds from = ddr_.edge(seen.ready);
   s.until(from, RequestPlace::kController, Culprit::kService);
-  if (seen.clock <= seen.ready) return;
-  each_wait(seen, from, ddr_.edge(seen.clock), Culprit::kCount,
-            [&](Culprit culprit, Picoseconds, Picoseconds to) { s.until(to, RequestPlace::kController, culprit); });
+  const Picoseconds time = seen.clock > seen.ready ? ddr_.edge(seen.clock) - from : 0;
+  if (time)
+    each_wait(seen, from, from + time, Culprit::kCount,
+              [&](Culprit culprit, Picoseconds, Picoseconds to) { s.until(to, RequestPlace::kController, culprit); });
+  s.until(first - (attributed - time), RequestPlace::kReturn, Culprit::kService);
+  s.until(first, RequestPlace::kReturn, culprit(s.master));
 }
 
 /// The same by totals, however many commands there were. `newest`: what the newest one adds.

@@ -79,8 +79,9 @@ class WaitAttribution {
     if (r.parts) r.parts->add(c, t);
   }
 
-  /// How the read found its row, and its steps up to the column command, out of what is remembered now.
-  void tell(const Column& c, SlowRequest& s) const;
+  /// How the read found its row, and its steps up to `first`, when its data are on the crossbar, out of what is
+  /// remembered now. `attributed`: its wait up to the column command, and behind older reads on the way back.
+  void tell(const Column& c, Picoseconds attributed, Picoseconds first, SlowRequest& s) const;
 
   WaitTable waits;
   /// Sum of the waits of the read that was attributed last.
