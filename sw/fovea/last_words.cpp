@@ -192,7 +192,7 @@ std::string wait_line(std::span<const StatRow> stats) {
   if (most == groups.end()) return "";
   Group& g = most->second;
   std::stable_sort(g.parts.begin(), g.parts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  constexpr std::size_t kParts = 3;
+  constexpr std::size_t kParts = 2;
   std::vector<std::string> parts;
   for (std::size_t k = 0; k < std::min(kParts, g.parts.size()); ++k)
     if (const double percent = 100 * g.parts[k].first / g.total; percent >= 0.5)  // as shown not zero
@@ -203,7 +203,7 @@ std::string wait_line(std::span<const StatRow> stats) {
 
 /// A line for each master: its slowest request, and as many of its parts as find room.
 std::string slowest_lines(std::span<const SlowestRow> rows) {
-  constexpr std::size_t kMasters = 5, kLine = 80;
+  constexpr std::size_t kMasters = 3, kLine = 80;
   std::string out;
   const auto each = slowest_of_each(rows);
   for (std::size_t i = 0; i < std::min(kMasters, each.size()); ++i) {

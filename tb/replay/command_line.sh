@@ -102,7 +102,7 @@ cmp "$out/before.json" "$out/replay/stats.json" || fail '--around changes a repl
 awk -F, -v slow="$slow" '
   { end = $2 == "read" ? $7 : $8; if ($1 " " $6 " " sprintf("%.3f", end - $6) == slow && $2 == "read") ++n }
   END { exit n != 1 }' "$out/replay/requests.csv" || fail "requests.csv does not have '$slow' once"
-expect around_what 2 "--around 'soon'" -- replay "$trace" --around soon
+expect around_what 2 "around: 'soon' is not allowed" -- replay "$trace" --around soon
 expect again 0 -- "$fovea" replay "$trace" -o "$out/again"
 cmp "$out/replay/stats.json" "$out/again/stats.json" || fail 'two replays differ'
 expect memory_only 0 -- replay "$trace" --memory-only

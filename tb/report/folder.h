@@ -20,6 +20,7 @@ struct HandMade {
     "allowed": "0 .. 2", "tag": "choice", "source": "", "belief": null, "description": "a number"})";
   std::string command = R"(["run", "hand.yaml"])";
   bool complete = true;
+  app::RunWords words;
 
   /// Writes config.json, stats.json and host.json into `name` and returns its path.
   std::filesystem::path write(const TempDir& dir, const std::string& name = "run") const {
@@ -28,7 +29,7 @@ struct HandMade {
                   commit + "\", \"modified\": false, \"experiment\": \"" + experiment +
                   "\", \"sha256\": {\"firmware.elf\": \"ab12\"}, \"params\": {" + parameters +
                   "}}");
-    dir.write(name + "/stats.json", app::stats_json(stats, complete, warnings));
+    dir.write(name + "/stats.json", app::stats_json(stats, complete, warnings, words));
     dir.write(
         name + "/host.json",
         "{\"version\": \"0\", \"command\": " + command +
@@ -108,7 +109,7 @@ inline void add_other_files(const TempDir& dir, const std::string& name) {
       "arm_d,read,arm_d,80153412.345,1250.000,0x80123440,32,5,1170,conflict,2,controller,vpbe,80153437.045,1000.000\n"
       "arm_d,read,arm_d,80153412.345,1250.000,0x80123440,32,5,1170,conflict,3,return,service,80154437.045,225.300\n"
       "vpbe,write,vpbe,1000.000,8.000,0x80000000,8,0,0,,1,port,bridge,1000.000,8.000\n");
-  dir.write(name + "/uart.log", "boot\npicture 720x576 in 625/50, table\nkernel: staged, 7 bytes of tables\n");
+  dir.write(name + "/uart.log", "boot\npicture 720x576 in 625/50, table\n");
   dir.write(
       name + "/profile.csv",
       "phase,function,file,line,cause,region,culprit,clocks,instructions\n"

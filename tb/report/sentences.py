@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Each sentence of `fovea report --text` that gives a share or a time, worked out again from the tables of the run: from
-frames.csv, stalls.csv and the trace of the SDRAM's commands, not from the figures that the sentence rests on.
+"""Each sentence of `fovea report --text` that gives a share or a time, worked out again from the tables of the run:
+from frames.csv, stalls.csv and the trace of the SDRAM's commands, not from the figures that the sentence rests on.
 Usage: sentences.py FOVEA OUT EXPERIMENT [-s KEY=VALUE ...]"""
 import csv
 import json
@@ -46,11 +46,12 @@ ms = lambda f, a, b: (float(f[b]) - float(f[a])) * 1e-6
 mean = lambda values: sum(values) / len(values)
 steps = ["capture_start_ns", "capture_end_ns", "remap_start_ns", "remap_end_ns", "display_start_ns"]
 whole = [f for f in frames if all(f[s] for s in steps)]
-if said := find(r"displayed one ([\d.]+) ms pass on average: ([\d.]+) (ms|us) of capture, ([\d.]+) (ms|us) until the remap begins, "
-                r"([\d.]+) ms of remap, and ([\d.]+) ms until"):
+if said := find(r"displayed one ([\d.]+) ms pass on average: ([\d.]+) (ms|us) of capture, "
+                r"([\d.]+) (ms|us) until the remap begins, ([\d.]+) ms of remap, and ([\d.]+) ms until"):
     close(said[1], mean([ms(f, steps[0], steps[4]) for f in whole]), "ms", "latency")
     for value, unit, k in ((said[2], said[3], 0), (said[4], said[5], 1), (said[6], "ms", 2), (said[7], "ms", 3)):
-        close(value, mean([ms(f, steps[k], steps[k + 1]) for f in whole]) * (1e3 if unit == "us" else 1), unit, steps[k + 1])
+        scale = 1e3 if unit == "us" else 1
+        close(value, mean([ms(f, steps[k], steps[k + 1]) for f in whole]) * scale, unit, steps[k + 1])
 starts = sorted(float(f["display_start_ns"]) for f in rows("frames.csv"))
 if said := find(r"and a frame comes every ([\d.]+) ms: ([\d.]+) % of the time is used and ([\d.]+) ms are left"):
     period = (starts[-1] - starts[0]) * 1e-6 / (len(starts) - 1)

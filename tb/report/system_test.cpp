@@ -49,6 +49,8 @@ TEST(SystemTest, SaysWhatRan) {
       "A simulated TI DM365 board runs its firmware: core ARM926EJ-S at 297 MHz, SDRAM mt47h64m16 at 243 MHz; video "
       "pal, camera sphere through a lens kannala_brandt. A remap is the correction of one captured frame: a look-up "
       "table says, for the pixels of the display, which pixels of the camera's picture to take.");
+  run.words.kernel = "staged";
+  run.write(dir);
   test::add_other_files(dir, "run");
   EXPECT_THAT(text(), HasSubstr("; video 720x576 in 625/50, camera sphere"));
   EXPECT_THAT(text(), HasSubstr(" Its loop is the kernel staged (firmware.kernel: fastest)."));

@@ -107,7 +107,8 @@ TEST(RunDirTest, FolderThatBecameForeignDuringTheRunIsNotReplaced) {
 
 TEST(RunDirTest, FilesOfTheUserInAnyPlaceAreNoRunFiles) {
   for (const char* name : {"config.json", "stats.json", "host.json", "frames.csv", "timeline.csv",
-                           "stalls.csv", "latency.csv", "slowest.csv", "requests.csv", "uart.log", "registers.log", "display.mp4",
+                           "stalls.csv", "latency.csv", "slowest.csv", "requests.csv", "uart.log", "registers.log",
+                           "display.mp4",
                            "camera/frame_000000.png",
                            "frames/frame_000000.png", "frames/frame_1234567.png"})
     EXPECT_TRUE(is_run_file(name)) << name;
