@@ -37,17 +37,65 @@ struct Unit {
   auto operator<=>(const Unit&) const = default;
 };
 
-/// All lines were executed more, or less, by one factor. Lines that an insertion elsewhere moved keep their distance.
+std::int64_t distance(unsigned to, unsigned from) { return std::int64_t{to} - std::int64_t{from}; }
+
+/// Instructions that a line of the second run had in the first one; `shift`: of the lines between the two sources.
+double was_at(const UnitPair& p, unsigned line, std::int64_t shift) {
+  const auto was = p.before.lines.find(static_cast<unsigned>(std::int64_t{line} - shift));
+  return was == p.before.lines.end() ? 0 : was->second;
+}
+
+/// How far an insertion above them has moved the lines: by what most of them are found again. Either version may begin
+/// with a few lines that the other one lacks, such as those of its entry.
+std::int64_t shift_of(const UnitPair& p) {
+  constexpr std::ptrdiff_t kTried = 4;
+  std::int64_t best = 0;
+  std::ptrdiff_t most = -1;
+  const auto first = [&](const std::map<unsigned, double>& lines) {
+    return std::next(lines.begin(), std::min(kTried, static_cast<std::ptrdiff_t>(lines.size())));
+  };
+  for (auto a = p.after.lines.begin(); a != first(p.after.lines); ++a)
+    for (auto b = p.before.lines.begin(); b != first(p.before.lines); ++b) {
+      const std::int64_t shift = distance(a->first, b->first);
+      const auto found = std::count_if(p.after.lines.begin(), p.after.lines.end(),
+                                       [&](const auto& line) { return was_at(p, line.first, shift) > 0; });
+      if (found > most) most = found, best = shift;
+    }
+  return best;
+}
+
+/// All lines were executed more, or less, by one factor.
 bool by_one_factor(const UnitPair& p) {
   if (p.before.lines.empty() || p.after.lines.empty()) return false;
-  const auto shift = static_cast<std::int64_t>(p.after.lines.begin()->first) -
-                     static_cast<std::int64_t>(p.before.lines.begin()->first);
+  const std::int64_t shift = shift_of(p);
   double like = 0;
-  for (const auto& [line, n] : p.after.lines) {
-    const auto was = p.before.lines.find(static_cast<unsigned>(static_cast<std::int64_t>(line) - shift));
-    if (was != p.before.lines.end() && was->second > 0 && alike_factors(n / was->second, p.factor())) like += n;
-  }
+  for (const auto& [line, n] : p.after.lines)
+    if (const double was = was_at(p, line, shift); was > 0 && alike_factors(n / was, p.factor())) like += n;
   return like >= kMostLines * p.after.instructions;
+}
+
+/// The same of a function that one run alone has inlined, where a compiler makes other instructions of the same lines,
+/// and some for the entry and the return.
+bool by_about_one_factor(const UnitPair& p) {
+  constexpr double kEntry = 0.3;  // of the instructions, at most
+  constexpr double kOtherwise = 0.35;
+  // A reference does not keep the lines of what hardly counts: what is left is whether it ran twice as often, or half.
+  if (p.before.lines.empty() || p.after.lines.empty())
+    return p.before.instructions > 0 && p.after.instructions > 0 && std::abs(std::log2(p.factor())) >= std::log2(1.5);
+  const std::int64_t shift = shift_of(p);
+  std::vector<double> factors;
+  double alone = 0;
+  for (const auto& [line, n] : p.after.lines) {
+    const double was = was_at(p, line, shift);
+    if (was > 0) factors.push_back(n / was);
+    else alone += n;
+  }
+  if (factors.empty() || alone > kEntry * p.after.instructions) return false;
+  const auto middle = factors.begin() + static_cast<std::ptrdiff_t>(factors.size() / 2);
+  std::nth_element(factors.begin(), middle, factors.end());
+  const double usual = *middle;
+  return std::all_of(factors.begin(), factors.end(),
+                     [&](double f) { return std::abs(f - usual) <= kOtherwise * std::min(f, usual); });
 }
 
 class OriginSearch {
@@ -64,6 +112,7 @@ class OriginSearch {
       sum(whole, pair);
       for (const auto& [line, n] : pair.before.lines) whole.before.lines[line] += n;
       for (const auto& [line, n] : pair.after.lines) whole.after.lines[line] += n;
+      add_home(unit.chain, pair);
       if (pair.before.instructions > 0) before_.insert(unit.chain.back());
       if (pair.after.instructions > 0) after_.insert(unit.chain.back());
     }
@@ -109,7 +158,30 @@ class OriginSearch {
     }
   }
 
-  bool has_other_code(const FunctionKey& f) const { return code_change(was_, is_, f).changed; }
+  void add_home(const Chain& chain, const UnitPair& pair) {
+    Home& home = homes_[chain.back()];
+    const bool own = chain.size() == 1;
+    if (pair.before.instructions > 0) (own ? home.own_before : home.inlined_before) = true;
+    if (pair.after.instructions > 0) (own ? home.own_after : home.inlined_after) = true;
+    sum(home.all, pair);
+    for (const auto& [line, n] : pair.before.lines) home.all.before.lines[line] += n;
+    for (const auto& [line, n] : pair.after.lines) home.all.after.lines[line] += n;
+  }
+
+  bool has_other_code(const FunctionKey& f) const {
+    const auto [known, added] = other_code_.try_emplace(f, false);
+    if (added) known->second = code_change(was_, is_, f).changed && !placed_otherwise(f);
+    return known->second;
+  }
+  /// Inlined in one run alone: its code is that of its holder there. Its lines tell whether it was changed itself.
+  bool placed_otherwise(const FunctionKey& f) const {
+    const auto found = homes_.find(f);
+    if (found == homes_.end()) return false;
+    const Home& h = found->second;
+    const bool outlined = h.inlined_before && !h.own_before && h.own_after && !h.inlined_after;
+    const bool inlined = h.own_before && !h.inlined_before && h.inlined_after && !h.own_after;
+    return (outlined || inlined) && by_about_one_factor(h.all);
+  }
 
   /// Of the functions of a chain, the one whose change it is.
   std::size_t within(const Chain& chain) const {
@@ -228,7 +300,15 @@ class OriginSearch {
     }
   }
 
+  /// Where the code of a function is in each run, and what all of it executes.
+  struct Home {
+    bool inlined_before = false, own_before = false, inlined_after = false, own_after = false;
+    UnitPair all;
+  };
+
   const Attribution &was_, &is_;
+  std::map<FunctionKey, Home> homes_;
+  mutable std::map<FunctionKey, bool> other_code_;
   std::set<FunctionKey> before_, after_;  // that execute anything
   std::map<Chain, UnitPair> whole_;       // with and without the loops that wait
   std::map<Unit, UnitPair> units_;
