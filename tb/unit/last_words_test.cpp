@@ -194,7 +194,7 @@ void expect_one_screen(const std::string& text, std::size_t lines_below) {
 
 TEST(RunWordsTest, FitOneScreen) {
   const std::string text = run_words(full_run(), kHost, slowest_rows());
-  expect_one_screen(text, 5);
+  expect_one_screen(text, 5);  // what binds, ended by, results, pictures, report
   EXPECT_THAT(text, StartsWith("frame rate met: 10 of 10 frames shown (25 a second)"));
   EXPECT_THAT(text, HasSubstr("\nbudget  40.0 ms"));
   EXPECT_THAT(text, HasSubstr("\ntimes   a remap 28.66 ms (28.66 to 28.66), capture to display 28.66 ms"));
