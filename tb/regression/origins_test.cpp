@@ -111,6 +111,23 @@ TEST_F(OriginsTest, AnInlinedFunctionThatIsExecutedMoreOftenIsItsHoldersDoing) {
   EXPECT_THAT(text(), testing::StartsWith("put (put.c) executes more in out: +80 clocks"));
 }
 
+// put calls `out` twice, for which the compiler no longer inlines it: `out` has its own code now, but did not change.
+// If a line of it is new, it did.
+TEST_F(OriginsTest, AFunctionThatIsNoLongerInlinedIsNotChangedByThat) {
+  replace(after.profile, "out,out.h,3,issue,,,60,60,put|put.c", "out,out.h,3,issue,,,120,120,");
+  replace(after.profile, "idle.capture,,,550", "idle.capture,,,490");
+  replace(after.functions, "put,put.c,0x00000400,64,d", "put,put.c,0x00000400,40,dd");
+  replace(after.functions, "out,out.h,0x00000400,64,d", "out,out.h,0x00000500,32,o");
+  after.paths =
+      "frames,main|main.c,100\nframes,main|main.c;draw|draw.c,200\nframes,main|main.c;print|print.c,50\n"
+      "frames,main|main.c;draw|draw.c;put|put.c,20\nframes,main|main.c;draw|draw.c;put|put.c;out|out.h,60\n"
+      "frames,main|main.c;print|print.c;put|put.c,20\nframes,main|main.c;print|print.c;put|put.c;out|out.h,60\n";
+  EXPECT_THAT(text(), testing::ContainsRegex("^put \\(put\\.c[^)]*\\) executes more in out: \\+60 clocks"));
+  replace(after.profile, "out,out.h,3,issue,,,120,120,",
+          "out,out.h,3,issue,,,60,60,,\nframes,out,out.h,4,issue,,,60,60,");
+  EXPECT_THAT(text(), testing::StartsWith("out (out.h:4) executes more"));
+}
+
 // Half of draw becomes a function of its own in the same file: nothing is slower but by the call, 6 clocks.
 TEST_F(OriginsTest, CodeThatMovedToAFunctionOfTheFileCountsOnce) {
   replace(after.profile, "draw,draw.c,10,issue,,,200,200", "draw,draw.c,10,issue,,,106,106");
