@@ -60,7 +60,7 @@ expect other_registers 0 '\(2 earlier accesses are not shown\)' \
   -- run --log-registers 'ddr\.' --log-registers-kept=1 "$programs/registers.elf"
 expect no_registers 2 'regular expression' -- run --log-registers '(' "$programs/registers.elf"
 expect nested 2 'not a regular expression \(missing \)' -- run --log-registers "$(printf '(%.0s' {1..9000})" "$programs/registers.elf"
-expect backtracking 0 -- timeout 20 "$fovea" exec --log-registers '(.*.*)*x$' "$programs/registers.elf"
+expect backtracking 2 'matches no register' -- timeout 20 "$fovea" exec --log-registers '(.*.*)*x$' "$programs/registers.elf"
 expect nothing_to_log 2 '--fast-memory' -- run --fast-memory --log-registers . "$programs/registers.elf"
 expect no_dma 2 '--hazards: there is no DMA; allowed: with --board' -- run --hazards "$programs/registers.elf"
 expect no_effect 0 "'ddr.scheduler' is set but has no effect with --fast-memory" -- \

@@ -13,8 +13,8 @@ import sys
 from pathlib import Path
 
 # Endings of files, which look like names: `stats.json`.
-FILES = set("bin c callgrind cc cfg cmake conf cpp csv dat elf f folded h html ini input json ld log md mp4 png py rstl "
-            "s sh stl sv trace txt xml yaml".split())
+FILES = set("bin c callgrind cc cfg cmake conf cpp csv dat elf f folded h html ini input json ld log md mp4 png py "
+            "rstl s sh stl sv trace txt xml yaml".split())
 NAME = re.compile(r"(?<![\w./-])([a-z]\w*(?:\.[A-Za-z_*][\w*]*)+)(?![\w/(.])")
 # Runs that have all kinds of figures between them.
 RUNS = {
