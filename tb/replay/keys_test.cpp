@@ -271,11 +271,12 @@ INSTANTIATE_TEST_SUITE_P(
         // RD of the first 8 behind its ACT, off the way of the second ACT.
         KeyEffect{"tRRD", "ddr.tRRD", "5cycles", "6cycles", {{"ddr.tRCD", "8cycles"}},
                   record(100, 0, 'R', 0) + record(100, 1, 'R', kBank), 1, end},
-        // The REF of the first interval, at clock 1001, is under way.
+        // A replay of text begins with its first request. The REF of the first interval, for which the row of that
+        // request is closed at clock 1001, is under way when the second request comes.
         KeyEffect{"tRFC", "ddr.tRFC", "40cycles", "41cycles", {{"ddr.tREFI", "1000cycles"}},
-                  record(1'002, 0, 'R', 0), 1, end},
-        KeyEffect{"tREFI", "ddr.tREFI", "1000cycles", "1001cycles", {}, record(1'002, 0, 'R', 0), 1,
-                  end},
+                  record(0, 1, 'R', 0) + record(1'010, 0, 'R', 0), 1, end},
+        KeyEffect{"tREFI", "ddr.tREFI", "1000cycles", "1001cycles", {},
+                  record(0, 1, 'R', 0) + record(1'010, 0, 'R', 0), 1, end},
         // Open row instead of a closed bank: tRCD less.
         KeyEffect{"page", "ddr.page", "2048B", "4096B", {}, far_apart(2'048), -6, end},
         // Other row instead of a closed bank: tRP more.
