@@ -30,6 +30,7 @@
 #include "sw/fovea/run_end.h"
 #include "sw/fovea/run_profile.h"
 #include "sw/fovea/simulation.h"
+#include "sw/fovea/source_lines.h"
 #include "sw/fovea/stall_regions.h"
 
 namespace fovea::app {
@@ -371,7 +372,11 @@ void BoardSimulation::attach_profile(Session& s) {
   cpu::Core& core = board_->dm365.arm.core();
   cpu::ClockProfile& profile = request.profile ? *core.profile() : core.start_profile();
   if (!request.profile) profile.stacks.set_functions(program_functions(programs));
-  perfetto_->watch_functions(profile, [this](std::uint32_t at) { return symbols_.describe(at); });
+  // The names are those of the profile's files.
+  const auto lines = std::make_shared<SourceLines>();
+  for (const ElfImage* const program : programs)
+    if (program) lines->add(*program);
+  perfetto_->watch_functions(profile, [lines](std::uint32_t at) { return lines->function_text(at); });
 }
 
 /// Semihosting and the debugger.

@@ -182,8 +182,8 @@ std::string words_of_kept(const trace::TraceInfo& info) {
     if (trace::keeps_times(info, m.id) && std::find(labels.begin(), labels.end(), m.label) == labels.end())
       labels.push_back(m.label);
   if (labels.empty()) return {};
-  return fmt::format("requests of {} keep their recorded times, because the trace does not hold what they wait for: "
-                     "with other settings, figures that depend on them do not follow a run",
+  return fmt::format("the trace does not hold all that requests of {} wait for: figures that depend on them do not "
+                     "follow a run",
                      fmt::join(labels, ", "));
 }
 

@@ -59,8 +59,7 @@ std::set<unsigned> streams_of(const trace::TraceInfo& info, const std::vector<st
   std::set<std::string> allowed;
   const auto holds_up = [&](const trace::MasterInfo& m) {
     return master_info(m.id).bridge == Bridge::kCore ||
-           (info.edma.request_clocks != 0 && master_info(m.id).pace == Pace::kTransfers &&
-            !trace::keeps_times(info, m.id));
+           (info.edma.request_clocks != 0 && master_info(m.id).pace == Pace::kTransfers);
   };
   for (const auto& m : info.masters)
     if (!holds_up(m)) allowed.insert(m.label);

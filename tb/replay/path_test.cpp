@@ -32,9 +32,9 @@ TEST(ReplayPathTest, TimesAreThoseOfTheCoresDrivenByHand) {
     std::array<std::uint8_t, 64> data;
   };
   std::deque<Sent> sent;
-  Picoseconds at = 1'000;
+  Picoseconds at = 0;  // a replay begins with the first request
   for (int n = 0; n < 3000; ++n) {
-    at += 20'000 + rng.below(300'000);  // seldom more than a few under way
+    if (n > 0) at += 20'000 + rng.below(300'000);  // seldom more than a few under way
     Sent& s = sent.emplace_back();
     dram::PathRequest& r = s.request;
     r.data = s.data.data();
@@ -135,9 +135,9 @@ TEST(ReplayPathTest, TheTimelineHasAllBytesInTheirTime) {
     const auto rows = p.path->timeline();  // of 1 ms; the fourth is not whole
     ASSERT_EQ(rows.size(), 4u);
     EXPECT_EQ(rows[3].start, 3'000'000'000u);
-    EXPECT_EQ(rows[3].end, p.path->duration());
+    EXPECT_EQ(rows[3].end, 5'000'000 + p.path->duration());  // it begins with the first request
     EXPECT_EQ(rows[3].write_bytes, (std::vector<std::uint64_t>{0, 4}));
-    EXPECT_EQ(rows[0].start, 0u);
+    EXPECT_EQ(rows[0].start, 5'000'000u);
     EXPECT_EQ(rows[2].end, 3'000'000'000u);
     EXPECT_EQ(rows[0].read_bytes, (std::vector<std::uint64_t>{256, 0}));
     EXPECT_EQ(rows[1].read_bytes, (std::vector<std::uint64_t>{0, 0}));

@@ -102,11 +102,11 @@ TEST(TraceBlocksTest, GoodOnesAreRead) {
 }
 
 TEST(TraceBlocksTest, VersionsBesideTheKnownOnesAreRefused) {
-  for (const char version : {'1', '2', '3'})
+  for (const char version : {'1', '2', '3', '4'})
     EXPECT_EQ(FileBuilder(version).block('I', 0, 0, kInfo).end(0).error(), "");
-  for (const char version : {'0', '4'})
+  for (const char version : {'0', '5'})
     EXPECT_THAT(FileBuilder(version).block('I', 0, 0, kInfo).end(0).error(),
-                HasSubstr("its version is not known; allowed: versions 1 to 3"));
+                HasSubstr("its version is not known; allowed: versions 1 to 4"));
 }
 
 TEST(TraceBlocksTest, TheirOrderAndNumberMatter) {

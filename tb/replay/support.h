@@ -49,10 +49,10 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
   using trace::Release;
   trace::Record r;
   const std::uint64_t kind = rng.below(10);
-  if (stream == 0 && rng.below(20) == 0) r.kind = Kind::kMark;
+  if (stream == 0 && rng.below(20) == 0) r.kind = trace::Kind::kMark;
   r.master = stream == 0 ? static_cast<Master>(rng.below(2))
                          : (stream == 1 ? Master::kVpfe : Master::kVpbe);
-  if (r.kind == Kind::kMark) {
+  if (r.kind == trace::Kind::kMark) {
     r.master = Master::kArmD;
     r.address = static_cast<std::uint32_t>(rng.below(256));
   } else {

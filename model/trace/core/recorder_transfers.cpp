@@ -145,7 +145,8 @@ void BusRecorder::release_transfer(Pending& p, const TransferTrigger& by, Picose
     case TransferTrigger::Kind::kEvent:
       return;  // at its time
     case TransferTrigger::Kind::kWrite: {
-      const auto it = std::find_if(triggers_.rbegin(), triggers_.rend(), [&](const Written& w) { return w.at == by.at; });
+      const auto it =
+          std::find_if(triggers_.rbegin(), triggers_.rend(), [&](const Written& w) { return w.at == by.at; });
       if (it != triggers_.rend()) source = {0, it->number};
       break;
     }
@@ -252,6 +253,9 @@ void BusRecorder::loaded(std::uint32_t offset, unsigned, std::uint64_t clock, st
     return;
   }
   if (!std::exchange(flag->written, false) || !flag->last || !open_) return;
+  // Where both work in internal RAM, words of the EDMA wait for those of the core, which the trace does not hold.
+  for (unsigned n = 0; n < kTransferControllers; ++n)
+    if (controllers_[n].stream != ~0u) not_followed_ |= 1u << index(edma_read(n)) | 1u << index(edma_write(n));
   const std::uint64_t origin = core_(nullptr).origin;
   note_wait(ram_looks_.first - origin, clock - origin, room_waits - room_waits_at_open_,
             {flag->by, Point::kDelivered, flag->at});

@@ -9,7 +9,7 @@ constexpr std::uint8_t kWrite = 1, kReleaseShift = 1, kNoRequest = 3 << kRelease
 // Second byte without a request: the release, and from there on the kind.
 constexpr unsigned kKindShift = 2;
 // Of a master's number: the request goes aside. Of a source: from there on the point.
-constexpr unsigned kAsideBit = 32, kPointShift = 4;
+constexpr unsigned kAsideBit = 32, kPointShift = 6;
 static_assert(kMasterCount < kAsideBit && kMasterCount + 1 < 1u << kPointShift);
 // What of a transfer differs from the one before.
 constexpr std::uint8_t kIndices = 1, kCounts = 2, kModes = 4;

@@ -265,7 +265,8 @@ void TraceFile::info_line(const std::string& key, std::string_view rest) {
     Interrupt i{v[0] + (info_.interrupts.empty() ? 0 : info_.interrupts.back().at)};
     if (!rest.empty()) {
       numbers(4);
-      if (v[0] >= kMasterCount || v[1] >= kPoints || v[2] >> 40) bad("it is corrupted: an interrupt by an impossible event");
+      if (v[0] >= kMasterCount || v[1] >= kPoints || v[2] >> 40)
+        bad("it is corrupted: an interrupt by an impossible event");
       i.source = static_cast<std::uint8_t>(v[0]);
       i.point = static_cast<Point>(v[1]);
       i.event = v[2];
