@@ -279,8 +279,8 @@ TEST_F(BlameTest, ChangedCodeIsToldFromCodeThatItMoved) {
 }
 
 TEST_F(BlameTest, NewAndVanishedFunctionsAreNamedSo) {
-  replace(after.profile, "frames,irq,irq.c,7,issue", "frames,poll,irq.c,9,issue");
-  replace(after.profile, "frames,irq,irq.c,7,icache", "frames,poll,irq.c,9,icache");
+  replace(after.profile, "frames,irq,irq.c,7,issue", "frames,poll,poll.c,9,issue");
+  replace(after.profile, "frames,irq,irq.c,7,icache", "frames,poll,poll.c,9,icache");
   const Difference d = difference();
   ASSERT_EQ(d.functions.size(), 2u);
   for (const auto& f : d.functions)

@@ -22,8 +22,8 @@ TEST(ReplayPathTest, TimesAreThoseOfTheCoresDrivenByHand) {
   Rng rng(1);
   std::string text = master_lines(3, 16);
   dram::Path hand(Frequency(243'000'000), Frequency(121'500'000));
-  mem::DdrConfig config;
-  for (const unsigned interval : {0u, mem::DdrConfig{}.refresh_interval}) {
+  mem::DdrConfig config = app::ReplayParams().config();  // the settings of a trace that has none
+  for (const unsigned interval : {0u, config.refresh_interval}) {
     config.refresh_interval = interval;  // counts from time 0, as in a replay
     hand.ddr.configure(config, 0);
   }

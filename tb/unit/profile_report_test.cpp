@@ -258,8 +258,8 @@ TEST_F(ProfileReportTest, FunctionsLieWhereTheProgramHasThem) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
 }
 
-/// Names of all functions of a program, as its call paths and the debugger have them. Further entries of a function, such
-/// as those of the comparisons in libgcc, which run into each other, are none of their own.
+/// Names of all functions of a program, as its call paths and the debugger have them. Further entries of a function,
+/// such as those of the comparisons in libgcc, which run into each other, are none of their own.
 std::vector<std::string> names_of(const char* file, bool symbols) {
   const ElfImage image = ElfImage::load(file);
   const ElfImage* const programs[] = {&image};
