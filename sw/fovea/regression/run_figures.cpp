@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <ranges>
 
 #include "model/common/check.h"
 #include "model/common/nearest.h"
@@ -145,7 +144,9 @@ RunFigures read_run(const fs::path& folder) {
 }
 
 std::string nearest_metric(const RunFigures& run, const std::string& name) {
-  return nearest_name(name, std::views::keys(run.metrics));
+  std::vector<std::string> names;
+  for (const auto& [known, metric] : run.metrics) names.push_back(known);
+  return nearest_name(name, names);
 }
 
 std::string exact_text(double value, bool whole) {
