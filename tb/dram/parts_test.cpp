@@ -282,7 +282,7 @@ TEST(CommandQueueTest, ASingleRequestJoinsWhenAnotherComes) {
 
 TEST(ReadOutcomesTest, HasRoomForAnyNumber) {
   mem::ReadOutcomes out;
-  for (unsigned i = 0; i < 40; ++i) out.add({nullptr, i, i + 1, 0});
+  for (unsigned i = 0; i < 40; ++i) out.add({nullptr, i, i + 1, 0, {}});
   ASSERT_EQ(out.size(), 40u);
   Picoseconds at = 0;
   for (const mem::ReadOutcome& r : out) EXPECT_EQ(r.first, at++);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Markdown pages: width of the lines, headings of READMEs, links to files and headings. C, C++ and
-SystemVerilog: width of the lines. In a git checkout: what is tracked at the top. Usage: pages.py SOURCE"""
+SystemVerilog: width of the lines. In a git checkout: what is tracked at the top, and what is tracked and ignored.
+Usage: pages.py SOURCE"""
 import os
 import re
 import subprocess
@@ -48,6 +49,10 @@ def strays(source):
     for name in sorted({file.split("/")[0] for file in git.stdout.split("\0") if file}):
         if name not in TOP and not name.startswith("."):
             yield f"{name}: does not belong at the top, where only {', '.join(sorted(TOP))} and files with a dot are"
+    ignored = subprocess.run(["git", "-C", source, "ls-files", "-z", "--cached", "--ignored", "--exclude-standard"],
+                             capture_output=True, text=True)
+    for name in filter(None, ignored.stdout.split("\0")):
+        yield f"{name}: is tracked, though .gitignore names it"
 
 
 def complaints(source):

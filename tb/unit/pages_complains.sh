@@ -14,7 +14,8 @@ columns 300 >"$folder/build/b.cpp"
 check() { "$1/tb/unit/pages.py" "$folder"; }
 git -C "$folder" init -q
 touch "$folder/.dot" "$folder/LICENSE" "$folder/not_tracked"
-git -C "$folder" add .dot LICENSE
+echo '*.pyc' >"$folder/.gitignore"
+git -C "$folder" add .dot .gitignore LICENSE
 said=$(check "$1") || { echo "complaints of a source without defects: $said"; exit 1; }
 
 printf '\n[a](part/none.md) [b](part/README.md#none)\n%s\n' "$(columns 121)" >>"$folder/page.md"
@@ -22,10 +23,13 @@ printf '# Part\n\n## Purpose\n\n## Limits\n' >"$folder/part/README.md"
 for file in a.cpp b.h c.c d.sv e.S; do printf '// %s\n' "$(columns 118)" >"$folder/part/$file"; done
 mkdir "$folder/run"
 touch "$folder/run/stats.json"
+touch "$folder/part/a.pyc" "$folder/part/b.pyc"
 git -C "$folder" add run/stats.json not_tracked
+git -C "$folder" add --force part/a.pyc
 said=$(check "$1" | sed 's/\(at the top\),.*/\1/'; exit "${PIPESTATUS[0]}") && { echo 'defects are not found'; exit 1; }
 expected="not_tracked: does not belong at the top
 run: does not belong at the top
+part/a.pyc: is tracked, though .gitignore names it
 page.md:3: no heading for the link part/README.md#how-it-works
 page.md:11: no file for the link part/none.md
 page.md:11: no heading for the link part/README.md#none
