@@ -28,6 +28,7 @@ git -C "$folder" add run/stats.json not_tracked
 git -C "$folder" add --force part/a.pyc
 said=$(check "$1" | sed 's/\(at the top\),.*/\1/'; exit "${PIPESTATUS[0]}") && { echo 'defects are not found'; exit 1; }
 expected="not_tracked: does not belong at the top
+part: does not belong at the top
 run: does not belong at the top
 part/a.pyc: is tracked, though .gitignore names it
 page.md:3: no heading for the link part/README.md#how-it-works
