@@ -16,8 +16,15 @@ class RamWatch {
   /// A load at a clock of the core, in the order of the program.
   /// @param room_waits clocks that the core has waited for room in its write buffers so far
   virtual void loaded(std::uint32_t offset, unsigned bytes, std::uint64_t clock, std::uint64_t room_waits) = 0;
-  /// A master's burst has changed the RAM, at `at`.
-  virtual void written(std::uint32_t offset, unsigned bytes, Master master, Picoseconds at) = 0;
+  struct Burst {
+    std::uint32_t offset = 0;
+    unsigned bytes = 0;
+    bool write = false;
+    Master master = Master::kCount;
+    std::uint64_t waited = 0;  ///< clocks of the core for which its words waited for accesses of the core
+  };
+  /// A master's burst has read or changed the RAM, at `at`.
+  virtual void moved(const Burst& burst, Picoseconds at) = 0;
 };
 
 }  // namespace fovea

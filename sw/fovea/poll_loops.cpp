@@ -73,21 +73,23 @@ std::uint32_t arm_branch_target(std::uint32_t w, std::uint32_t from) {
 /// @param body the loop's instructions, the last of which branches back to the first
 bool only_waits(std::span<const std::uint32_t> body) {
   std::vector<LoopEffect> effects;
-  std::uint32_t written = 0;
+  std::uint32_t written = 0, counted = 0, otherwise = 0;
   for (const std::uint32_t w : body.first(body.size() - 1)) {
     if (is_arm_branch(w)) continue;  // out of the loop, or within it
     const auto e = effect_of(w);
     if (!e) return false;
     effects.push_back(*e);
     written |= e->writes;
+    (e->counts ? counted : otherwise) |= e->writes;
   }
+  const std::uint32_t counters = counted & ~otherwise;  // may be compared with the most turns
   constexpr std::uint32_t kPcBit = 1u << 15;
   if (written & kPcBit) return false;
   std::uint32_t fresh = 0, loaded = 0;  // written in this turn; what was loaded, or computed from it
   bool compares = false;
   for (const LoopEffect& e : effects) {
     if (e.load && (e.reads & written)) return false;
-    if (!e.load && !e.counts && (e.reads & written & ~fresh)) return false;
+    if (!e.load && !e.counts && (e.reads & written & ~fresh & ~(e.writes == 0 ? counters : 0))) return false;
     const bool of_loaded = e.load || (e.reads & loaded);
     compares = compares || (e.flags && (e.reads & loaded));
     fresh |= e.writes;

@@ -313,6 +313,13 @@ void ReplayPath::submit_transfer(unsigned stream) {
     memory_.crossbar().set_priority(m, s.record.priority);
   }
   const unsigned burst = s.record.burst;
+  const auto in_ram = [this](const TransferRequest::Side& side) {
+    return side.address - memory_.map().ram_base < memory_.map().ram_size;
+  };
+  if (moves && in_ram(request.source))
+    ram_bursts_[index(edma_read(s.controller))].push_back({request.bytes(), s.record.ram_waits[false]});
+  if (moves && in_ram(request.destination))
+    ram_bursts_[index(edma_write(s.controller))].push_back({request.bytes(), s.record.ram_waits[true]});
   set_time(stream, kNever);
   if (moves) pipes_[s.controller]->submit(request, burst, now);
   fetch(stream);
@@ -348,18 +355,38 @@ void ReplayPath::serve(MemRequest& r, bus::Slave slave, Picoseconds arrival) {
     const Clock& core = streams_[0].clock;
     const std::uint64_t words = ((r.address & 3u) + r.bytes + 3) / 4;
     const std::uint64_t begin = core.edge_after(std::max(arrival, ram_free_));
-    done = ram_free_ = core.edge(begin + edma.ram_latency + words * edma.ram_word_clocks - 1);
+    done = ram_free_ =
+        core.edge(begin + edma.ram_latency + words * edma.ram_word_clocks + ram_waits(r) - 1);
   } else {
     Picoseconds& free = registers_free_[index(r.master)];
     const bool aside = is_core(r.master);
     const Picoseconds one = aside ? static_cast<Slot&>(r).service : edma.register_latency;
     done = free = std::max(arrival, free) + one * (aside ? 1u : (r.bytes + 3u) / 4);
+    if (aside) delivered(static_cast<Slot&>(r), done);
   }
   if (!is_core(r.master)) static_cast<ReplayPipe::Burst&>(r).delivered = done;
   const auto place = std::upper_bound(served_.begin(), served_.end(), done,
                                       [](Picoseconds t, const Served& s) { return t < s.at; });
   served_.insert(place, {&r, done});
   served_at_ = served_.front().at;
+}
+
+/// The core's write changes its register at `at`.
+void ReplayPath::delivered(const Slot& slot, Picoseconds at) {
+  const unsigned stream = masters_[index(slot.master)].stream;
+  streams_[stream].history[slot.number % kHistory].delivered = at;
+  wake_those_behind(stream);
+}
+
+/// Clocks of the core for which the next burst of a transfer waits for it, as recorded.
+std::uint32_t ReplayPath::ram_waits(const MemRequest& r) {
+  auto& transfers = ram_bursts_[index(r.master)];
+  if (transfers.empty()) return 0;
+  RamBursts& t = transfers.front();
+  const std::uint32_t waits = t.next < t.waits.size() ? t.waits[t.next++] : 0;
+  t.left -= std::min<std::uint32_t>(r.bytes, t.left);
+  if (t.left == 0) transfers.pop_front();
+  return waits;
 }
 
 Taken ReplayPath::deliver(MemRequest& r, bus::Slave slave, Picoseconds arrival) {
@@ -488,8 +515,9 @@ void ReplayPath::complete(Slot& slot) {
   MasterState& m = *static_cast<MasterState*>(slot.owner);
   last_ = std::max(last_, slot.last);
   slot.free = slot.last;
-  streams_[m.stream].history[slot.number % kHistory] = {slot.write ? slot.came : slot.first,
-                                                          slot.last};
+  Outcome& o = streams_[m.stream].history[slot.number % kHistory];
+  o.first = slot.write ? slot.came : slot.first;
+  o.last = slot.last;
   if (time_[m.stream] == kNever) wake(m.stream);
   if (cross_) [[unlikely]]
     wake_those_behind(m.stream);

@@ -1,6 +1,7 @@
 // The memory system played from a trace, without core, video and SystemC.
 #pragma once
 #include <array>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -90,7 +91,7 @@ class ReplayPath final : private memsys::MemoryHost {
   /// Of a transfer: when it was submitted, when it ended.
   struct Outcome {
     Picoseconds first, last;
-    Picoseconds delivered = kNever;  // of a transfer: the last write is in internal RAM
+    Picoseconds delivered = kNever;  // trace::Point::kDelivered
   };
   struct Stream {
     trace::Record record;
@@ -103,6 +104,13 @@ class ReplayPath final : private memsys::MemoryHost {
     Picoseconds came = 0;   // when it was released
     std::vector<Outcome> history;
     unsigned controller = kTransferControllers;  // whose transfers it holds; kTransferControllers: none's
+  };
+  /// Bytes that a transfer has still to read from, or to write to internal RAM, and the clocks of the core for which
+  /// its bursts wait for it there.
+  struct RamBursts {
+    std::uint32_t left = 0;
+    std::vector<std::uint32_t> waits;
+    std::size_t next = 0;
   };
   /// A request to a slave that is no part of the memory system.
   struct Served {
@@ -126,6 +134,8 @@ class ReplayPath final : private memsys::MemoryHost {
   void submit_transfer(unsigned stream);
   void send(ReplayPipe::Burst& burst);
   void serve(MemRequest& r, bus::Slave slave, Picoseconds arrival);
+  void delivered(const Slot& slot, Picoseconds at);
+  std::uint32_t ram_waits(const MemRequest& r);
   void finish_served();
   Picoseconds next_event() const { return std::min(memory_.next_event(), served_at_); }
   void wake_those_behind(unsigned stream);
@@ -163,6 +173,7 @@ class ReplayPath final : private memsys::MemoryHost {
   std::vector<Served> served_;         // by time
   Picoseconds served_at_ = kNever;     // of the first one
   Picoseconds ram_free_ = 0;
+  std::array<std::deque<RamBursts>, kMasterCount> ram_bursts_;  // by master, of its transfers in order
   std::array<Picoseconds, kMasterCount> registers_free_{};
   unsigned next_stream_ = 0;
   Picoseconds next_time_ = kNever;

@@ -152,7 +152,7 @@ def binds(experiment, settings):
     metric = "frame.remap_time.mean"
     settings = [s for s in settings if not s.startswith("run.frames=")] + ["run.frames=1"]
     out = limits(experiment, settings, f"binds-{experiment}", ["--binds", metric])
-    figure = lambda name, more: run(experiment, settings + more, "binds-" + name)[0][metric]
+    figure = lambda name, more: run(experiment, settings + more, "binds-" + name)[0].get(metric)  # None: no remap in it
     plain = figure("plain", [])
     with open(os.path.join(out, "binds.csv"), newline="") as f:
         rows = list(csv.DictReader(f))
@@ -181,8 +181,9 @@ def binds(experiment, settings):
         for end, column in zip(ends or [], ("low", "high")):
             at = figure(f"{name}-{column}", end)
             expect(experiment, f"{name} {column}", row["plain_" + column], at)
-            expect(experiment, f"{name} {column}", row["gain_" + column], 1 - relaxed / at, 1)
-            gains.append(1 - relaxed / at)
+            expect(experiment, f"{name} {column}", row["gain_" + column], None if at is None else 1 - relaxed / at, 1)
+            if at is not None:
+                gains.append(1 - relaxed / at)
         if bool(ends) != (row["origin"] in ("assumed", "family")):
             fail(f"{experiment} {name}: the origin is {row['origin']}")
         word = "yes" if gain > BINDS else "perhaps" if max(gains) > BINDS else "no"
@@ -206,7 +207,10 @@ def binds(experiment, settings):
 
 
 def expect(experiment, what, text, value, scale=None):
-    if not text or abs(float(text) - value) > SAME * (scale or abs(value)):
+    if value is None:
+        if text:
+            fail(f"{experiment} {what}: '{text}', and a run has no such figure")
+    elif not text or abs(float(text) - value) > SAME * (scale or abs(value)):
         fail(f"{experiment} {what}: '{text}', by a run {value}")
 
 

@@ -63,10 +63,10 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
   return Result::kAbort;
 }
 
-/// What the buffers do before this load comes first, so that an observer learns of things in the order of
-/// their times.
+/// What the buffers do before this load comes first, so that an observer learns of things in the order of their times:
+/// as far as nobody else has to act for it, who would act after this instruction if nothing was observed.
 void Core::tell_load(std::uint32_t pa, unsigned bytes) {
-  bus_.run_buffers(ledger_.cycle);
+  if (ledger_.cycle < interface_.stop_cycle && !interface_.attention) bus_.run_buffers(ledger_.cycle);
   ram_watch_->loaded(ram_.offset(pa), bytes, ledger_.cycle, bus_.room_waits());
 }
 
@@ -271,14 +271,16 @@ void Core::tcm_burst_ends(bool write, std::uint8_t* data) {
   const std::span<std::uint8_t> bytes = ram_.burst_bytes();
   const std::uint32_t offset = ram_.port().burst().offset;
   ram_.port().finish();
-  if (!write) {
+  if (write) {
+    std::memcpy(bytes.data(), data, bytes.size());
+    fetch_.drop_ram(offset, static_cast<std::uint32_t>(bytes.size()));
+  } else {
     std::memcpy(data, bytes.data(), bytes.size());
-    return;
   }
-  std::memcpy(bytes.data(), data, bytes.size());
-  fetch_.drop_ram(offset, static_cast<std::uint32_t>(bytes.size()));
   if (ram_watch_)
-    ram_watch_->written(offset, static_cast<unsigned>(bytes.size()), ram_.port().burst().master, tcm_burst_over());
+    ram_watch_->moved({offset, static_cast<unsigned>(bytes.size()), write, ram_.port().burst().master,
+                       ram_.port().waited_of_burst()},
+                      tcm_burst_over());
 }
 
 }  // namespace fovea::cpu

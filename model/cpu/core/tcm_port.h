@@ -35,6 +35,7 @@ class TcmPort {
     burst_ = burst;
     left_ = ((burst.offset & 3u) + burst.bytes + 3) / 4;
     active_ = true;
+    waited_before_ = waited_[0] + waited_[1];
     next_ = clock + rules_.latency;
     ++bursts_;
   }
@@ -70,6 +71,8 @@ class TcmPort {
   }
   /// Clocks in which words of the DMA waited for the core, since the start.
   std::uint64_t waited(Side side) const { return waited_[static_cast<std::size_t>(side)]; }
+  /// The same of the latest burst, so far.
+  std::uint64_t waited_of_burst() const { return waited_[0] + waited_[1] - waited_before_; }
 
  private:
   Rules rules_;
@@ -80,6 +83,7 @@ class TcmPort {
   std::uint64_t next_ = 0;  // clock at which the next word wants the bank
   std::uint64_t bursts_ = 0;
   std::array<std::uint64_t, 2> waited_{};
+  std::uint64_t waited_before_ = 0;
 };
 
 }  // namespace fovea::cpu

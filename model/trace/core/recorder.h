@@ -78,7 +78,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
     pulsed_at_ = at;
   }
   void loaded(std::uint32_t offset, unsigned bytes, std::uint64_t clock, std::uint64_t room_waits) override;
-  void written(std::uint32_t offset, unsigned bytes, Master master, Picoseconds at) override;
+  void moved(const Burst& burst, Picoseconds at) override;
 
   /// After close(). `info` has the parameters and the clocks of crossbar and SDRAM; the rest is
   /// filled in.
@@ -123,7 +123,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
     bool blocking = false;  // the program waits for its end
   };
   /// A burst from the write buffer.
-  struct Burst {
+  struct Buffered {
     std::uint64_t number, asked;
     unsigned words;
   };
@@ -142,14 +142,16 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
     struct Left {
       std::uint64_t number;
       std::uint32_t bytes;
+      std::uint32_t bursts;  // that went elsewhere than to the SDRAM
     };
-    std::deque<Left> to_write;      // transfers with writes that are not on the port yet
-    struct Write {
+    std::array<std::deque<Left>, 2> to_issue;  // transfers with reads, and writes, that are not on the port yet
+    struct Elsewhere {
       std::uint32_t address;
       std::uint64_t number;
+      std::uint32_t burst;  // of those of the transfer that do not go to the SDRAM
       bool last;
     };
-    std::deque<Write> elsewhere;    // writes under way that do not go to the SDRAM
+    std::array<std::deque<Elsewhere>, 2> elsewhere;  // reads and writes under way that do not go to the SDRAM
   };
   /// A word of internal RAM that the program looks at again and again.
   struct Flag {
@@ -188,6 +190,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   void submit_of_transfer(const MemRequest& r, bool to_sdram);
   void release_transfer(Pending& p, const TransferTrigger& by, Picoseconds ready);
   Transfer transfer_of(const TransferTrigger& by) const;
+  void note_ram_waits(const Controller& c, const Controller::Elsewhere& of, const Burst& burst);
   void end_flight(const MemRequest& r);
   void release_core(Stream& s, Pending& p, const MemRequest& r);
   void release_in_program(Stream& s, Pending& p, std::uint64_t asked);
@@ -214,7 +217,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   static constexpr std::size_t kSteps = 32;
   std::array<Step, kSteps> steps_{};  // in the order in which they went out
   std::size_t next_step_ = 0;
-  std::deque<Burst> bursts_;          // the last ones, no more than fill the buffer
+  std::deque<Buffered> bursts_;          // the last ones, no more than fill the buffer
   std::uint64_t last_victim_ = kNone;
   CoreState core_before_;
   std::uint64_t room_waits_at_open_ = 0;
@@ -237,6 +240,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   struct Written {
     Picoseconds at;
     std::uint64_t number;
+    Point point;  // of the record
   };
   /// Places of the core's records that transfers wait for; they may be written long before the transfers.
   std::map<std::uint64_t, std::uint64_t> places_;

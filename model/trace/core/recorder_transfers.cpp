@@ -46,24 +46,24 @@ void BusRecorder::submit_aside(const MemRequest& r) {
   if (open_ && r.issued >= start_) release_core(s, p, r);
 }
 
-/// A burst of a transfer, which follows from its record. Which of them changes a word that the program looks at
-/// is noted.
+/// A burst of a transfer, which follows from its record. Which of them changes a word that the program looks at, and
+/// what each waits for in internal RAM, is noted.
 void BusRecorder::submit_of_transfer(const MemRequest& r, bool to_sdram) {
-  if (!r.write) return;
   Controller& c = controllers_[master_info(r.master).unit];
-  if (c.to_write.empty()) return;  // of a request from before the recorder
-  Controller::Left& left = c.to_write.front();
+  auto& to_issue = c.to_issue[r.write];
+  if (to_issue.empty()) return;  // of a request from before the recorder
+  Controller::Left& left = to_issue.front();
   left.bytes -= std::min<std::uint32_t>(left.bytes, r.bytes);
-  if (!to_sdram) c.elsewhere.push_back({r.address, left.number, left.bytes == 0});
-  if (left.bytes == 0) c.to_write.pop_front();
+  if (!to_sdram) c.elsewhere[r.write].push_back({r.address, left.number, left.bursts++, left.bytes == 0});
+  if (left.bytes == 0) to_issue.pop_front();
 }
 
 void BusRecorder::register_done(const MemRequest& r) {
   if (of_transfers_ >> index(r.master) & 1u) {
-    auto& under_way = controllers_[master_info(r.master).unit].elsewhere;
+    auto& under_way = controllers_[master_info(r.master).unit].elsewhere[r.write];
     const auto it = std::find_if(under_way.begin(), under_way.end(),
-                                 [&](const Controller::Write& w) { return w.address == r.address; });
-    if (r.write && it != under_way.end()) under_way.erase(it);
+                                 [&](const Controller::Elsewhere& w) { return w.address == r.address; });
+    if (it != under_way.end()) under_way.erase(it);
     return;
   }
   if (stream_of_[index(r.master)] != 0) return;
@@ -90,14 +90,14 @@ void BusRecorder::trigger_written(Master writer, Picoseconds at) {
     if (edge > 0 && clock_.edge(edge) > at) --edge;
     release_behind_latest(streams_[0], p, clock_.edge(edge), 1);
     if (p.record.release == Release::kAfter) p.record.service = at - clock_.edge(edge);
-    triggers_.push_back({at, streams_[0].next - 1});
+    triggers_.push_back({at, streams_[0].next - 1, Point::kEnd});
     places_.emplace(streams_[0].next - 1, kNone);
   } else {
     const auto& flights = flights_[index(writer)];
     const auto it = std::find_if(flights.begin(), flights.end(),
                                  [&](const Flight& f) { return f.request == posted_.front(); });
     if (it == flights.end()) return;
-    triggers_.push_back({at, it->number});
+    triggers_.push_back({at, it->number, Point::kDelivered});
     places_.emplace(it->number, kNone);
   }
   if (triggers_.size() > kTriggersKept) triggers_.pop_front();
@@ -126,7 +126,8 @@ void BusRecorder::requested(const TransferRequest& request, const TransferTrigge
   p.record.burst = static_cast<std::uint8_t>(burst);
   if (surroundings_.priority)
     p.record.priority = static_cast<std::uint8_t>(surroundings_.priority(edma_read(request.controller)));
-  if (request.bytes() != 0) c.to_write.push_back({number, request.bytes()});
+  if (request.bytes() != 0)
+    for (auto& to_issue : c.to_issue) to_issue.push_back({number, request.bytes(), 0});
   if (!open_ || at < start_) return;
   release_transfer(p, by, ready);
   write_out(s, c.stream, kHeldBack);
@@ -147,7 +148,9 @@ void BusRecorder::release_transfer(Pending& p, const TransferTrigger& by, Picose
     case TransferTrigger::Kind::kWrite: {
       const auto it =
           std::find_if(triggers_.rbegin(), triggers_.rend(), [&](const Written& w) { return w.at == by.at; });
-      if (it != triggers_.rend()) source = {0, it->number};
+      if (it == triggers_.rend()) break;
+      source = {0, it->number};
+      point = it->point;
       break;
     }
     case TransferTrigger::Kind::kSubmitted:
@@ -253,25 +256,35 @@ void BusRecorder::loaded(std::uint32_t offset, unsigned, std::uint64_t clock, st
     return;
   }
   if (!std::exchange(flag->written, false) || !flag->last || !open_) return;
-  // Where both work in internal RAM, words of the EDMA wait for those of the core, which the trace does not hold.
-  for (unsigned n = 0; n < kTransferControllers; ++n)
-    if (controllers_[n].stream != ~0u) not_followed_ |= 1u << index(edma_read(n)) | 1u << index(edma_write(n));
   const std::uint64_t origin = core_(nullptr).origin;
   note_wait(ram_looks_.first - origin, clock - origin, room_waits - room_waits_at_open_,
             {flag->by, Point::kDelivered, flag->at});
   ram_looks_ = {};
 }
 
-void BusRecorder::written(std::uint32_t offset, unsigned bytes, Master master, Picoseconds at) {
-  if (!(of_transfers_ >> index(master) & 1u)) return;
-  const Controller& c = controllers_[master_info(master).unit];
-  const auto it = std::find_if(c.elsewhere.begin(), c.elsewhere.end(), [&](const Controller::Write& w) {
-    return w.address - INTERNAL_RAM_DATA_BASE == offset;
+void BusRecorder::moved(const Burst& burst, Picoseconds at) {
+  if (!(of_transfers_ >> index(burst.master) & 1u)) return;
+  const Controller& c = controllers_[master_info(burst.master).unit];
+  const auto& under_way = c.elsewhere[burst.write];
+  const auto it = std::find_if(under_way.begin(), under_way.end(), [&](const Controller::Elsewhere& w) {
+    return w.address - INTERNAL_RAM_DATA_BASE == burst.offset;
   });
-  if (it == c.elsewhere.end()) return;
+  if (it == under_way.end()) return;
+  note_ram_waits(c, *it, burst);
+  if (!burst.write) return;
   for (Flag& f : flags_)
-    if (f.word - offset < bytes)
+    if (f.word - burst.offset < burst.bytes)
       f = {f.word, true, it->last, {static_cast<std::uint8_t>(c.stream), it->number}, at};
+}
+
+/// The transfer's record is held back at least until its bursts have ended.
+void BusRecorder::note_ram_waits(const Controller& c, const Controller::Elsewhere& of, const Burst& burst) {
+  Stream& s = streams_[c.stream];
+  const std::uint64_t first_pending = s.next - s.pending.size();
+  if (burst.waited == 0 || of.number < first_pending) return;
+  auto& waits = s.pending[of.number - first_pending].record.ram_waits[burst.write];
+  waits.resize(std::max<std::size_t>(waits.size(), of.burst + 1));
+  waits[of.burst] = static_cast<std::uint32_t>(burst.waited);
 }
 
 void BusRecorder::interrupt(Picoseconds at) {

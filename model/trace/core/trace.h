@@ -37,7 +37,7 @@ enum class Kind : std::uint8_t {
 enum class Point : std::uint8_t {
   kEnd,        ///< the last beat; of a transfer the acknowledgement of its last write
   kSubmitted,  ///< a transfer goes to its transfer controller
-  kDelivered,  ///< the last write of a transfer has changed the internal RAM
+  kDelivered,  ///< the last write of a transfer has changed the internal RAM; a write aside its register
 };
 inline constexpr std::uint8_t kPoints = 3;
 
@@ -70,6 +70,9 @@ struct Record {
   /// controller takes it. Addresses are the masters'. One without bytes moves nothing.
   TransferRequest transfer;
   std::uint8_t burst = 0;       ///< kTransfer: default burst size, bytes
+  /// kTransfer: clocks of the core for which its bursts that read and that write internal RAM waited for the core's
+  /// accesses to it, in the order of the bursts; the last ones that did not wait are left out.
+  std::array<std::vector<std::uint32_t>, 2> ram_waits;
   bool on_bus() const { return kind == Kind::kRequest || kind == Kind::kAside; }
   friend bool operator==(const Record&, const Record&) = default;
 };
@@ -133,8 +136,8 @@ struct TraceInfo {
   std::vector<MasterInfo> masters;
   std::vector<Interrupt> interrupts;
   EdmaInfo edma;
-  /// Masters some of whose requests keep their recorded times, although on the chip they wait for others: a replay does
-  /// not follow a run with other settings.
+  /// Masters some of whose requests keep their recorded times, although on the chip they wait for others: with other
+  /// settings a replay does not follow a run.
   std::vector<Master> kept;
 };
 

@@ -12,7 +12,7 @@ constexpr unsigned kKindShift = 2;
 constexpr unsigned kAsideBit = 32, kPointShift = 6;
 static_assert(kMasterCount < kAsideBit && kMasterCount + 1 < 1u << kPointShift);
 // What of a transfer differs from the one before.
-constexpr std::uint8_t kIndices = 1, kCounts = 2, kModes = 4;
+constexpr std::uint8_t kIndices = 1, kCounts = 2, kModes = 4, kRamWaits = 8;
 
 /// Of version 3 on.
 bool has_room(const Record& r) { return r.write && r.on_bus() && r.release == Release::kAfter; }
@@ -60,6 +60,7 @@ void encode_transfer(const Record& r, CodeState& s, std::string& out) {
   if (t.source.index != last.source.index || t.destination.index != last.destination.index) changed |= kIndices;
   if (t.acnt != last.acnt || t.bcnt != last.bcnt) changed |= kCounts;
   if (modes(t, r.burst, r.priority) != modes(last, s.burst, s.transfer_priority)) changed |= kModes;
+  if (!r.ram_waits[0].empty() || !r.ram_waits[1].empty()) changed |= kRamWaits;
   out.push_back(static_cast<char>(changed));
   put_number(out, difference(t.source.address, last.source.address));
   put_number(out, difference(t.destination.address, last.destination.address));
@@ -72,6 +73,11 @@ void encode_transfer(const Record& r, CodeState& s, std::string& out) {
     put_number(out, t.bcnt);
   }
   if (changed & kModes) put_number(out, modes(t, r.burst, r.priority));
+  if (changed & kRamWaits)
+    for (const auto& waits : r.ram_waits) {
+      put_number(out, waits.size());
+      for (const std::uint32_t n : waits) put_number(out, n);
+    }
   s.transfer = t;
   s.burst = r.burst;
   s.transfer_priority = r.priority;
@@ -187,6 +193,13 @@ void decode_transfer(ByteReader& in, CodeState& s, Record& r) {
     if (word >> 21 || !power_of_two(t.fifo_bytes, 32) || !power_of_two(s.burst, kMaxBurstBytes))
       throw BadTrace("an impossible transfer");
   }
+  if (changed & kRamWaits)
+    for (auto& waits : r.ram_waits)
+      for (std::uint64_t left = in.number(); left != 0; --left) {
+        const std::uint64_t n = in.number();
+        if (n >> 28 || waits.size() == t.bytes()) throw BadTrace("an impossible transfer");
+        waits.push_back(static_cast<std::uint32_t>(n));
+      }
   if (s.burst == 0) throw BadTrace("an impossible transfer");
   r.transfer = t;
   r.burst = s.burst;

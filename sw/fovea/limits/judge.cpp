@@ -147,7 +147,8 @@ Verdict judge(const points::PointResult& result, const std::vector<Condition>& c
   const std::string slow = slow_remaps(result);
   once = once && failed.size() == 1 && slow.empty();
   if (failed.empty() && !slow.empty()) failed.push_back(slow);
-  return {failed.empty() ? Kind::kGood : Kind::kBad, fmt::format("{}", fmt::join(failed, ", ")), 2, once};
+  const bool near = failed.empty() && slack(result).value_or(0) < 0;
+  return {failed.empty() ? Kind::kGood : Kind::kBad, fmt::format("{}", fmt::join(failed, ", ")), 2, once || near};
 }
 
 }  // namespace fovea::limits

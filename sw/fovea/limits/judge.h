@@ -51,8 +51,9 @@ struct Verdict {
   Kind kind = Kind::kUnknown;
   std::string why;  ///< not met, or the message of the run that failed; empty if good
   int status = 2;   ///< for kUnknown: what the command ends with
-  /// Bad, but only for a frame that was shown again once: a longer window tells a slip from a loss.
-  bool once = false;
+  /// A longer window has to tell: bad, but only for a frame that was shown again once, or good although a remap took
+  /// longer than a frame period, so that the mean over more frames decides.
+  bool longer = false;
   bool good() const { return kind == Kind::kGood; }
 };
 
@@ -60,6 +61,6 @@ struct Verdict {
 /// frame may have been shown again because the loop slipped.
 Verdict judge(const points::PointResult& result, const std::vector<Condition>& conditions, unsigned slips = 0);
 /// Frames of the window that tells whether what happened once in a window of `frames` happens again.
-constexpr std::uint64_t longer_window(std::uint64_t frames) { return frames < 8 ? frames + 8 : 2 * frames; }
+constexpr std::uint64_t longer_window(std::uint64_t frames) { return frames < 24 ? frames + 24 : 2 * frames; }
 
 }  // namespace fovea::limits

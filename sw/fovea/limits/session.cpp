@@ -35,7 +35,7 @@ void Session::judged_run(const Settings& settings, const Settings& more, Judged 
       settings, more,
       [this, settings, more, done, label](const points::PointResult& result) {
         const Verdict verdict = judge(result, conditions_);
-        if (!verdict.once) return done(result, verdict);
+        if (!verdict.longer) return done(result, verdict);
         Settings longer = settings;
         longer.insert(longer.end(), more.begin(), more.end());
         const auto effective = this->effective(longer);

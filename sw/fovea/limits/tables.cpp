@@ -162,7 +162,7 @@ std::string points_csv(std::vector<points::Runner::Entry> entries, const std::ve
     if (point.command == "run") {
       const Verdict v = judge(*result, conditions);
       const char* const kinds[] = {"met", "not met", "unknown"};
-      row.insert(row.end(), {v.once ? "once" : kinds[static_cast<int>(v.kind)], v.why});
+      row.insert(row.end(), {v.longer && !v.good() ? "once" : kinds[static_cast<int>(v.kind)], v.why});
     } else {
       row.insert(row.end(), {"", result->message});
     }
