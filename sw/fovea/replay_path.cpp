@@ -93,6 +93,9 @@ void ReplayPath::set_up_streams() {
     streams_[i].earliest = info_.start;
     streams_[i].history.resize(kHistory);
   }
+  const bool of_transfers = std::any_of(info_.interrupts.begin(), info_.interrupts.end(),
+                                        [](const trace::Interrupt& i) { return i.source != trace::kInterrupt; });
+  if (of_transfers && !streams_.empty()) wake_order_.emplace(source_, 0, info_);
 }
 
 void ReplayPath::set_up_masters() {
@@ -169,10 +172,45 @@ void ReplayPath::check(const trace::Record& r, const Stream& s) {
 
 /// Takes the stream's next record; marks are noted on the way.
 void ReplayPath::fetch(unsigned stream) {
+  next_record(stream);
+  prepare(stream);
+}
+
+void ReplayPath::next_record(unsigned stream) {
   Stream& s = streams_[stream];
+  if (stream == 0 && wake_order_) return next_in_wake_order();
+  s.number = s.played;
   s.valid = source_.next(stream, s.record);
   if (s.valid && s.record.kind == trace::Kind::kRequest) check(s.record, s);
-  prepare(stream);
+}
+
+/// While the core sleeps, what goes on is chosen when its time is asked for.
+void ReplayPath::next_in_wake_order() {
+  Stream& s = streams_[0];
+  asleep_ = false;
+  if (std::exchange(chosen_, false)) wake_order_->take();
+  WakeOrder::Numbered n;
+  if (wake_order_->next(n)) return set_core_record(n);
+  s.valid = asleep_ = wake_order_->asleep();
+  settled_ = false;
+}
+
+void ReplayPath::set_core_record(WakeOrder::Numbered& n) {
+  Stream& s = streams_[0];
+  s.record = std::move(n.record);
+  s.number = n.number;
+  s.valid = true;
+  if (s.record.kind == trace::Kind::kRequest) check(s.record, s);
+}
+
+/// @return a stream that may still wake the core earlier than what was chosen; kInterrupt: none
+std::uint8_t ReplayPath::wake_core() {
+  if (!asleep_ || settled_) return trace::kInterrupt;
+  WakeOrder::Choice choice = wake_order_->choose([this](const trace::Record& r) { return event(r); });
+  set_core_record(choice.first);
+  chosen_ = true;
+  settled_ = choice.settled;
+  return choice.awaited;
 }
 
 /// The slot that is free first.
@@ -197,15 +235,20 @@ Picoseconds ReplayPath::event(const trace::Record& r) const {
 
 Picoseconds ReplayPath::moment(std::uint8_t stream, std::uint64_t number, trace::Point point) const {
   const Stream& other = streams_[stream];
-  if (number >= other.number) return kNever;
-  if (number + kHistory <= other.number) return start_;  // long done
   const Outcome& o = other.history[number % kHistory];
+  if (o.number != number) return number + kHistory <= other.played ? start_ : kNever;  // long done, or not yet
   switch (point) {
     case trace::Point::kEnd: return o.last;
     case trace::Point::kSubmitted: return o.first;
     case trace::Point::kDelivered: return o.delivered;
   }
   return kNever;
+}
+
+/// Of the stream's record, which has been played.
+inline void ReplayPath::note_outcome(Stream& s, Picoseconds first, Picoseconds last) {
+  s.history[s.number % kHistory] = {s.number, first, last, last};
+  s.played = std::max(s.played, s.number + 1);
 }
 
 /// The first edge of the stream's bus clock at or after one of its clock.
@@ -219,8 +262,9 @@ inline Picoseconds ReplayPath::released(const Stream& s) const {
   if (r.release == trace::Release::kAt) return r.at;
   Picoseconds from = start_;
   if (r.back != 0) {
-    const Outcome& o = s.history[(s.number - r.back) % kHistory];
-    from = r.from_first ? o.first : o.last;
+    const std::uint64_t before = s.number - r.back;
+    const Outcome& o = s.history[before % kHistory];
+    from = o.number != before ? start_ : r.from_first ? o.first : o.last;  // what comes later after all holds up nothing
     if (from == kNever) return kNever;
   }
   std::uint64_t edge = s.clock.edge_at_or_after(from) + r.gap;
@@ -230,7 +274,9 @@ inline Picoseconds ReplayPath::released(const Stream& s) const {
     edge = std::max(edge, s.clock.edge_at_or_after(risen)) + r.wake_gap;
   }
   if (r.room != 0) {
-    const Picoseconds ended = s.history[(s.number - r.room) % kHistory].last;
+    const std::uint64_t before = s.number - r.room;
+    const Outcome& o = s.history[before % kHistory];
+    const Picoseconds ended = o.number == before ? o.last : start_;
     if (ended == kNever) return kNever;
     edge = std::max(edge, aligned(s, s.clock.edge_at_or_after(ended)));
   }
@@ -249,13 +295,14 @@ void ReplayPath::prepare(unsigned stream) {
   set_time(stream, kNever);
   for (;;) {
     if (!s.valid) return;
+    const std::uint8_t earlier = stream == 0 ? wake_core() : trace::kInterrupt;
     const trace::Record& r = s.record;
     if (r.on_bus()) {
       s.slot = place(masters_[index(r.master)], r.write);
       if (s.slot->free == kNever) return;
     }
     Picoseconds at = released(s);
-    waits_for_[stream] = at == kNever ? awaited(r) : trace::kInterrupt;
+    waits_for_[stream] = at == kNever ? awaited(r) : earlier;
     cross_ |= waits_for_[stream] != trace::kInterrupt;
     if (at == kNever) return;
     if (r.kind == trace::Kind::kTransfer) {
@@ -273,16 +320,15 @@ void ReplayPath::prepare(unsigned stream) {
     at = std::max(at, s.earliest);
     if (r.kind == trace::Kind::kStep) at += r.service;
     if (at > kLatest) throw UserError(fmt::format("trace '{}': it goes on for hours", name_));
-    if (r.on_bus()) {
+    if (r.on_bus() || earlier != trace::kInterrupt) {
       set_time(stream, at);
       return;
     }
     if (r.kind == trace::Kind::kMark) marks_.push_back({r.address, at});
     if (on_issue) on_issue(stream, at);
-    s.history[s.number++ % kHistory] = {at, at};
+    note_outcome(s, at, at);
     if (cross_) wake_those_behind(stream);
-    s.valid = source_.next(stream, s.record);
-    if (s.valid && s.record.kind == trace::Kind::kRequest) check(s.record, s);
+    next_record(stream);
   }
 }
 
@@ -303,7 +349,7 @@ void ReplayPath::submit_transfer(unsigned stream) {
   request.number = s.number;
   const bool moves = request.bytes() != 0;
   masters_[index(edma_read(s.controller))].at_recorded_time += s.record.release == trace::Release::kAt && s.number > 0;
-  s.history[s.number++ % kHistory] = {now, moves ? kNever : now, moves ? kNever : now};
+  note_outcome(s, now, moves ? kNever : now);
   s.earliest = now;
   next_request_ = scr_.edge(scr_.edge_after(now) + info_.edma.request_clocks - 1);
   if (on_issue) on_issue(stream, now);
@@ -427,6 +473,11 @@ void ReplayPath::issue() {
   Stream& s = streams_[stream];
   const trace::Record& r = s.record;
   if (r.kind == trace::Kind::kTransfer) return submit_transfer(stream);
+  if (stream == 0) settled_ = true;  // nothing has woken the core earlier
+  if (!r.on_bus()) {
+    prepare(stream);
+    return find_next();
+  }
   Slot& slot = *s.slot;
   MasterState& m = masters_[index(r.master)];
   if (m.in_turn) {
@@ -445,14 +496,14 @@ void ReplayPath::issue() {
   slot.locked = r.locked;
   slot.bytes = r.bytes;
   slot.came = s.came;
-  s.history[s.number++ % kHistory] = {r.write ? s.came : kNever, kNever};
+  note_outcome(s, r.write ? s.came : kNever, kNever);
   s.earliest = next_time_;
   if (on_issue) [[unlikely]]
     on_issue(stream, next_time_);
   if (!aside) {
     ++requests_;
     ++m.transactions;
-    m.at_recorded_time += r.release == trace::Release::kAt && s.number > 1;
+    m.at_recorded_time += r.release == trace::Release::kAt && s.number > 0;
     bytes_ += r.bytes;
     (r.write ? m.write_bytes : m.read_bytes) += r.bytes;
   }
@@ -515,9 +566,10 @@ void ReplayPath::complete(Slot& slot) {
   MasterState& m = *static_cast<MasterState*>(slot.owner);
   last_ = std::max(last_, slot.last);
   slot.free = slot.last;
-  Outcome& o = streams_[m.stream].history[slot.number % kHistory];
-  o.first = slot.write ? slot.came : slot.first;
-  o.last = slot.last;
+  if (Outcome& o = streams_[m.stream].history[slot.number % kHistory]; o.number == slot.number) {
+    o.first = slot.write ? slot.came : slot.first;
+    o.last = slot.last;
+  }
   if (time_[m.stream] == kNever) wake(m.stream);
   if (cross_) [[unlikely]]
     wake_those_behind(m.stream);
@@ -526,12 +578,14 @@ void ReplayPath::complete(Slot& slot) {
 /// Those that wait for something of the stream.
 void ReplayPath::wake_those_behind(unsigned stream) {
   for (unsigned i = 0; i < streams_.size(); ++i)
-    if (waits_for_[i] == stream && time_[i] == kNever) wake(i);
+    if (waits_for_[i] == stream && (time_[i] == kNever || i == 0)) wake(i);
 }
 
 void ReplayPath::wake(unsigned stream) {
   prepare(stream);
-  if (time_[stream] < next_time_) {
+  if (stream == next_stream_) {
+    find_next();
+  } else if (time_[stream] < next_time_) {
     next_stream_ = stream;
     next_time_ = time_[stream];
   }

@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "sw/fovea/replay_params.h"
 #include "sw/fovea/replay_pipe.h"
 #include "sw/fovea/slowest.h"
+#include "sw/fovea/wake_order.h"
 
 namespace fovea::app {
 
@@ -90,13 +92,15 @@ class ReplayPath final : private memsys::MemoryHost {
   };
   /// Of a transfer: when it was submitted, when it ended.
   struct Outcome {
-    Picoseconds first, last;
-    Picoseconds delivered = kNever;  // trace::Point::kDelivered
+    std::uint64_t number = ~std::uint64_t{0};  // of its record
+    Picoseconds first = 0, last = 0;
+    Picoseconds delivered = kNever;            // trace::Point::kDelivered
   };
   struct Stream {
     trace::Record record;
     bool valid = false;     // `record` is the next one
-    std::uint64_t number = 0;
+    std::uint64_t number = 0;   // of `record`
+    std::uint64_t played = 0;   // one more than the largest number played
     Picoseconds earliest = 0;
     Clock clock;
     unsigned align = 1, phase = 0;
@@ -126,6 +130,11 @@ class ReplayPath final : private memsys::MemoryHost {
   void add_wait_rows(const std::string& label, Waits MasterWaits::*direction, const char* name,
                      std::vector<StatRow>& rows) const;
   void fetch(unsigned stream);
+  void next_record(unsigned stream);
+  void next_in_wake_order();
+  void set_core_record(WakeOrder::Numbered& n);
+  std::uint8_t wake_core();
+  static void note_outcome(Stream& s, Picoseconds first, Picoseconds last);
   void prepare(unsigned stream);
   Picoseconds event(const trace::Record& r) const;
   Picoseconds moment(std::uint8_t stream, std::uint64_t number, trace::Point point) const;
@@ -163,6 +172,8 @@ class ReplayPath final : private memsys::MemoryHost {
   bool memory_only_;
   std::array<MasterState, kMasterCount> masters_;
   std::vector<Stream> streams_;
+  std::optional<WakeOrder> wake_order_;  // of the core, if transfers wake it
+  bool asleep_ = false, chosen_ = false, settled_ = false;
   std::array<Picoseconds, kMasterCount> time_{};  // of each stream's next request
   std::uint32_t due_ = 0;                         // streams whose time is known
   std::array<std::uint8_t, kMasterCount> waits_for_{};  // stream that holds up each, by kWhen
