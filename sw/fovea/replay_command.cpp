@@ -163,6 +163,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
                                {params.ddr.size_bytes(), true});
   SomeStreams source(options.wrap ? wrapped : *trace.source, left_out);
   ReplayPath path(one_line(options.trace), *trace.info, source, params, options.memory_only);
+  path.end_with_window();
   if (commands) commands->begin(path.controller(), path.start());
   std::optional<RequestsAround> around;
   Subscription observing;

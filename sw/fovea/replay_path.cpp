@@ -182,6 +182,7 @@ void ReplayPath::next_record(unsigned stream) {
   s.number = s.played;
   s.valid = source_.next(stream, s.record);
   if (s.valid && s.record.kind == trace::Kind::kRequest) check(s.record, s);
+  if (stream == 0 && !s.valid) core_has_ended();
 }
 
 /// While the core sleeps, what goes on is chosen when its time is asked for.
@@ -193,6 +194,19 @@ void ReplayPath::next_in_wake_order() {
   if (wake_order_->next(n)) return set_core_record(n);
   s.valid = asleep_ = wake_order_->asleep();
   settled_ = false;
+  if (!s.valid) core_has_ended();
+}
+
+void ReplayPath::end_with_window() {
+  end_with_window_ = info_.core_until != 0;
+  if (end_with_window_) stop_ = info_.end;
+}
+
+void ReplayPath::core_has_ended() {
+  // A core that slept for longer before the window's end had done all it had to do by then.
+  constexpr Picoseconds kAtWork = 20;
+  const Picoseconds rest = info_.end - info_.core_until;
+  if (end_with_window_ && rest <= (info_.end - info_.start) / kAtWork) stop_ = std::min(stop_, core_last_ + rest);
 }
 
 void ReplayPath::set_core_record(WakeOrder::Numbered& n) {
@@ -325,6 +339,7 @@ void ReplayPath::prepare(unsigned stream) {
       return;
     }
     if (r.kind == trace::Kind::kMark) marks_.push_back({r.address, at});
+    if (stream == 0) core_last_ = std::max(core_last_, at);
     if (on_issue) on_issue(stream, at);
     note_outcome(s, at, at);
     if (cross_) wake_those_behind(stream);
@@ -498,6 +513,7 @@ void ReplayPath::issue() {
   slot.came = s.came;
   note_outcome(s, r.write ? s.came : kNever, kNever);
   s.earliest = next_time_;
+  if (stream == 0) core_last_ = next_time_;
   if (on_issue) [[unlikely]]
     on_issue(stream, next_time_);
   if (!aside) {
@@ -520,7 +536,9 @@ void ReplayPath::issue() {
 }
 
 bool ReplayPath::run_before(Picoseconds until) {
+  if (ended_early_ != kNever) return true;
   for (;;) {
+    if (stop_ < until) until = stop_;
     const Picoseconds event = memory_.next_event();
     if (served_at_ < std::min(next_time_, event)) [[unlikely]] {  // after all else of its instant
       if (served_at_ >= until) break;
@@ -533,11 +551,26 @@ bool ReplayPath::run_before(Picoseconds until) {
       break;
     }
   }
-  if (std::min(next_time_, next_event()) != kNever) return false;
+  const bool all = std::min(next_time_, next_event()) == kNever;
+  if (until == stop_ && !all) {
+    ended_early_ = stop_;
+    leave_out_the_rest();
+    return true;
+  }
+  if (!all) return false;
   for (const Stream& s : streams_)
     if (s.valid)  // a locked read without its write keeps all others out
       throw UserError(fmt::format("trace '{}': it stops before its end", name_));
   return true;
+}
+
+void ReplayPath::leave_out_the_rest() {
+  for (unsigned i = 0; i < streams_.size(); ++i)
+    for (Stream& s = streams_[i]; s.valid; next_record(i)) {
+      left_out_ += s.record.on_bus() || s.record.kind == trace::Kind::kTransfer;
+      if (i == 0 && asleep_) wake_core();
+    }
+  while (!marks_.empty() && marks_.back().at > ended_early_) marks_.pop_back();
 }
 
 Picoseconds ReplayPath::end() const {

@@ -30,7 +30,11 @@ class ReplayPath final : private memsys::MemoryHost {
   ReplayPath(std::string name, const trace::TraceInfo& info, trace::RecordSource& source,
              const ReplayParams& params, bool memory_only);
 
-  /// Plays what comes before `until`; true: all is played. @throws UserError for a record that this
+  /// The figures shall be comparable with those of a run in the recorded window: nothing is played after its end, as
+  /// the video ports' later requests are not in the trace, nor for long after the core's last record, if the core was at
+  /// work up to the window's end and has now done all sooner.
+  void end_with_window();
+  /// Plays what comes before `until`; true: all is played that is to be. @throws UserError for a record that this
   /// memory cannot have
   bool run_before(Picoseconds until);
   /// To be called before the figures are read.
@@ -132,6 +136,8 @@ class ReplayPath final : private memsys::MemoryHost {
   void fetch(unsigned stream);
   void next_record(unsigned stream);
   void next_in_wake_order();
+  void core_has_ended();
+  void leave_out_the_rest();
   void set_core_record(WakeOrder::Numbered& n);
   std::uint8_t wake_core();
   static void note_outcome(Stream& s, Picoseconds first, Picoseconds last);
@@ -189,6 +195,10 @@ class ReplayPath final : private memsys::MemoryHost {
   unsigned next_stream_ = 0;
   Picoseconds next_time_ = kNever;
   Picoseconds start_ = 0, last_ = 0;
+  bool end_with_window_ = false;
+  Picoseconds stop_ = kNever, ended_early_ = kNever;
+  std::uint64_t left_out_ = 0;         // requests and transfers, because of stop_
+  Picoseconds core_last_ = 0;          // when the core's latest record went out
   std::uint64_t requests_ = 0, bytes_ = 0;
   std::vector<Mark> marks_;
   memsys::MemorySystem memory_;

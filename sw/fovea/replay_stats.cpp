@@ -14,6 +14,9 @@ std::vector<StatRow> ReplayPath::stats() {
   rows.push_back({"replay.time", seconds, "s",
                   "from the trace's start to the last completion or, if that is later, the SDRAM's last data"});
   rows.push_back({"replay.requests", requests_, "1", "requests played"});
+  rows.push_back({"replay.left_out", left_out_, "1",
+                  "requests and transfers of the trace that were not played: the recorded window was over, or the core "
+                  "had done all that it did in it"});
   if (seconds > 0) {
     rows.push_back({"replay.bandwidth", static_cast<double>(bytes_) / seconds, "B/s",
                     "bytes moved / replay.time"});

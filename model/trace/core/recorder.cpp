@@ -407,6 +407,7 @@ void BusRecorder::write_one(Stream& s, unsigned index) {
   if (index == 0)
     if (const auto it = places_.find(number); it != places_.end()) it->second = s.written;
   if (s.first == kNone) s.first = number;
+  if (index == 0) core_until_ = std::min(std::max(core_until_, p.issued), end_);
   ++s.written;
   writer_.add(index, r);
 }
@@ -428,6 +429,7 @@ void BusRecorder::finish(TraceInfo info,
                             stream_of_[index(m.id)], m.reads, m.writes, m.shared});
   for (unsigned i = 0; i < streams_.size(); ++i)
     while (!streams_[i].pending.empty()) write_one(streams_[i], i);
+  info.core_until = core_until_;
   list_interrupts(info);
   for (const auto& m : masters_)
     if (not_followed_ >> index(m.id) & 1u) info.kept.push_back(m.id);

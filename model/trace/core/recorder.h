@@ -224,6 +224,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   bool register_access_ = false;  // of the core since its last request here
   Clock clock_;
   StreamInfo core_info_;
+  Picoseconds core_until_ = 0;  // when its last record went out
   unsigned align_;
   bool phase_known_ = false;
   struct Risen {

@@ -128,6 +128,7 @@ struct ClockInfo {
 
 struct TraceInfo {
   Picoseconds start = 0, end = 0;  ///< of what was recorded
+  Picoseconds core_until = 0;      ///< when the core's last record went out; 0: not known
   Picoseconds refresh = 0;  ///< one of the refresh intervals counts from the clock after; 0: not known
   /// Parameters in force, as `key value`; keys of `fovea params`.
   std::vector<std::pair<std::string, std::string>> params;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <map>
 #include <sstream>
 
 #include "model/common/check.h"
@@ -56,6 +57,7 @@ std::string info_text(const TraceInfo& info) {
   std::ostringstream out;
   out << "start " << info.start << "\nend " << info.end << "\nrefresh " << info.refresh
       << "\n";
+  if (info.core_until != 0) out << "core_until " << info.core_until << "\n";
   for (const auto* c : {&info.scr, &info.ddr})
     out << (c == &info.scr ? "scr " : "ddr ") << c->frequency.num << ' ' << c->frequency.den << ' '
         << c->start << "\n";
@@ -234,9 +236,13 @@ void TraceFile::info_line(const std::string& key, std::string_view rest) {
     for (std::size_t i = 0; i < n; ++i)
       if (!take_number(rest, v[i])) bad("it is corrupted: '" + key + "' in its description");
   };
-  if (key == "start" || key == "end" || key == "refresh") {
+  const std::map<std::string_view, Picoseconds TraceInfo::*> times = {{"start", &TraceInfo::start},
+                                                                      {"end", &TraceInfo::end},
+                                                                      {"core_until", &TraceInfo::core_until},
+                                                                      {"refresh", &TraceInfo::refresh}};
+  if (const auto time = times.find(key); time != times.end()) {
     numbers(1);
-    (key == "start" ? info_.start : key == "end" ? info_.end : info_.refresh) = v[0];
+    info_.*time->second = v[0];
   } else if (key == "scr" || key == "ddr") {
     numbers(3);
     if (v[1] == 0) bad("it is corrupted: a clock without a frequency");
@@ -292,7 +298,7 @@ void TraceFile::info_line(const std::string& key, std::string_view rest) {
 void TraceFile::check_info() {
   constexpr Picoseconds kLatest = 3600 * kPsPerSecond;
   const auto time_ok = [](Picoseconds t) { return t <= kLatest; };
-  bool ok = info_.start <= info_.end && info_.refresh <= info_.start &&
+  bool ok = info_.start <= info_.end && info_.core_until <= info_.end && info_.refresh <= info_.start &&
             time_ok(info_.end) && !info_.streams.empty() &&
             info_.streams.size() <= kMasterCount && !info_.masters.empty();
   for (const auto& c : {info_.scr, info_.ddr})
