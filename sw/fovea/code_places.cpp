@@ -70,7 +70,7 @@ class Code {
       // B, BL and BLX with an offset: bits 27 to 25 are 101.
       if ((word & 0x0e00'0000) == 0x0a00'0000) {
         const auto offset = static_cast<std::uint32_t>(static_cast<std::int32_t>(word << 8) >> 6);
-        branch(hash, word & 0xff00'0000, from + 8 + offset);
+        branch(hash, word & 0xff00'0000, from + 8 + offset, word);
       } else {
         value(hash, word);
       }
@@ -87,7 +87,8 @@ class Code {
       // BL and BLX are two halves: 11110 with the upper bits, 111x1 with the lower ones.
       if ((first & 0xf800) == 0xf000 && (second & 0xe800) == 0xe800) {
         const auto upper = static_cast<std::uint32_t>(static_cast<std::int32_t>(first << 21) >> 9);
-        branch(hash, (second & 0xf800) << 16 | 0xf000, (from + 4 + upper + ((second & 0x7ff) << 1)) & ~1u);
+        branch(hash, (second & 0xf800) << 16 | 0xf000, (from + 4 + upper + ((second & 0x7ff) << 1)) & ~1u,
+               first | second << 16);
         at += 2;
       } else if (from % 4 == 0 && at + 4 <= bytes_.size() && !meaning(image_, first | second << 16).empty()) {
         value(hash, first | second << 16);
@@ -101,11 +102,14 @@ class Code {
 
  private:
   std::uint32_t half(std::size_t at) const { return bytes_[at] | std::uint32_t{bytes_[at + 1]} << 8; }
-  /// Within the code a branch is as far as before.
-  void branch(Hash& hash, std::uint32_t opcode, std::uint32_t target) const {
+  /// Within the code a branch is as far as before. A number among the code may look like a branch: it leads nowhere.
+  void branch(Hash& hash, std::uint32_t opcode, std::uint32_t target, std::uint32_t word) const {
+    const bool within = target - address_ < size_;
+    const std::string name = within ? "" : meaning(image_, target);
+    if (!within && name.empty()) return hash.add(word);
     hash.add(opcode);
-    if (target - address_ < size_) hash.add(target - address_);
-    else value(hash, target);
+    if (within) hash.add(target - address_);
+    else hash.add(name);
   }
   void value(Hash& hash, std::uint32_t word) const {
     const std::string name = meaning(image_, word);

@@ -44,22 +44,54 @@ inline trace::TraceInfo board_info() {
   return info;
 }
 
+/// A transfer of the EDMA, and what its bursts waited for in internal RAM.
+inline void make_transfer(Rng& rng, trace::Record& r) {
+  r.kind = trace::Kind::kTransfer;
+  r.master = Master::kArmD;
+  TransferRequest& t = r.transfer;
+  for (TransferRequest::Side* side : {&t.source, &t.destination}) {
+    side->address = static_cast<std::uint32_t>(rng.next());
+    side->index = static_cast<std::int32_t>(rng.below(65'536)) - 32'768;
+    side->constant = rng.below(8) == 0;
+  }
+  t.acnt = static_cast<std::uint16_t>(1 + rng.below(512));
+  t.bcnt = static_cast<std::uint16_t>(rng.below(16));
+  t.fifo_bytes = static_cast<std::uint8_t>(1u << rng.below(6));
+  r.burst = static_cast<std::uint8_t>(16u << rng.below(3));
+  r.priority = static_cast<std::uint8_t>(rng.below(8));
+  for (auto& waits : r.ram_waits)
+    for (std::uint64_t n = rng.below(2) ? rng.below(std::min<std::uint64_t>(t.bytes() + 1, 40)) : 0; n > 0; --n)
+      waits.push_back(static_cast<std::uint32_t>(rng.below(300)));
+}
+
 /// A random record of a stream that is valid as its `number`-th.
 inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t number) {
   using trace::Release;
   trace::Record r;
   const std::uint64_t kind = rng.below(10);
   if (stream == 0 && rng.below(20) == 0) r.kind = trace::Kind::kMark;
+  else if (stream == 0 && rng.below(20) == 0) r.kind = trace::Kind::kStep;
+  else if (stream == 0 && rng.below(20) == 0) r.kind = trace::Kind::kAside;
   r.master = stream == 0 ? static_cast<Master>(rng.below(2))
                          : (stream == 1 ? Master::kVpfe : Master::kVpbe);
   if (r.kind == trace::Kind::kMark) {
     r.master = Master::kArmD;
     r.address = static_cast<std::uint32_t>(rng.below(256));
+  } else if (r.kind == trace::Kind::kStep) {
+    r.master = Master::kArmD;
+    r.service = rng.below(10'000);
+  } else if (stream == 1 && rng.below(6) == 0) {
+    make_transfer(rng, r);
   } else {
     r.write = stream == 1 || (stream == 0 && rng.below(2));
     r.bytes = static_cast<std::uint8_t>(4u << rng.below(stream == 0 ? 4 : 5));
     r.address = static_cast<std::uint32_t>(rng.below(1u << 20) * 64);
     if (!r.write && r.bytes == 32) r.critical = static_cast<std::uint8_t>(4 * rng.below(8));
+    if (r.kind == trace::Kind::kAside) {
+      r.write = true;
+      r.critical = 0;
+      r.service = rng.below(1'000'000);
+    }
     r.priority = static_cast<std::uint8_t>(rng.below(8));
   }
   r.release = number == 0 || kind < 2 ? Release::kAt
@@ -80,6 +112,7 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
     } else {  // from an earlier iteration
       r.source = static_cast<std::uint8_t>((stream + 1 + rng.below(2)) % 3);
       r.event = rng.below(number);
+      r.point = static_cast<trace::Point>(rng.below(trace::kPoints));
     }
     r.wake_gap = static_cast<std::uint32_t>(rng.below(100));
   }
