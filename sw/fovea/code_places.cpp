@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 namespace fovea::app {
@@ -29,7 +30,7 @@ class Hash {
 /// A name for an address of the program, with the offset in what the name means; the section alone where
 /// no symbol is, such as for the text of a message. Empty if the program has nothing there. Small numbers
 /// are more often numbers than addresses in the internal RAM: of those only the beginning of a symbol is
-/// one.
+/// one. So are odd ones in the middle of an object.
 std::string meaning(const ElfImage& image, std::uint32_t address) {
   const auto& symbols = image.symbols();
   auto above = std::upper_bound(symbols.begin(), symbols.end(), address,
@@ -38,7 +39,8 @@ std::string meaning(const ElfImage& image, std::uint32_t address) {
   constexpr int kNearest = 8;  // symbols may overlap a little
   for (int looks = 0; looks < kNearest && above != symbols.begin(); ++looks) {
     const ElfSymbol& s = *--above;
-    if (address == s.address || (address >= kSmall && address - s.address < s.size))
+    const bool within = address >= kSmall && address - s.address < s.size && (s.function || address % 4 == 0);
+    if (address == s.address || within)
       return fmt::format("{}+{}", s.text(), address - s.address);
   }
   if (address < kSmall) return "";
@@ -63,16 +65,20 @@ class Code {
   }
 
   void add_arm(Hash& hash) const {
+    const std::set<std::size_t> literals = arm_literals();
     std::size_t at = 0;
     for (; at + 4 <= bytes_.size(); at += 4) {
       const std::uint32_t word = half(at) | half(at + 2) << 16;
       const auto from = static_cast<std::uint32_t>(address_ + at);
       // B, BL and BLX with an offset: bits 27 to 25 are 101.
-      if ((word & 0x0e00'0000) == 0x0a00'0000) {
+      const bool branches = (word & 0x0e00'0000) == 0x0a00'0000;
+      if (literals.contains(at) || (!branches && word - address_ < size_)) {
+        value(hash, word);
+      } else if (branches) {
         const auto offset = static_cast<std::uint32_t>(static_cast<std::int32_t>(word << 8) >> 6);
         branch(hash, word & 0xff00'0000, from + 8 + offset, word);
       } else {
-        value(hash, word);
+        hash.add(word);
       }
     }
     rest(hash, at);
@@ -101,6 +107,21 @@ class Code {
   }
 
  private:
+  /// Offsets of the words that loads relative to the program counter read: an instruction is not mistaken for an
+  /// address.
+  std::set<std::size_t> arm_literals() const {
+    std::set<std::size_t> out;
+    for (std::size_t at = 0; at + 4 <= bytes_.size(); at += 4) {
+      const std::uint32_t word = half(at) | half(at + 2) << 16;
+      const bool load = (word & 0x0f7f'0000) == 0x051f'0000, pair = (word & 0x0f7f'00f0) == 0x014f'00d0;
+      if (!load && !pair) continue;
+      const std::uint32_t offset = load ? word & 0xfff : (word >> 4 & 0xf0) | (word & 0xf);
+      const std::size_t target = at + 8 + (word & 1u << 23 ? offset : 0u - std::size_t{offset});
+      out.insert(target);
+      if (pair) out.insert(target + 4);
+    }
+    return out;
+  }
   std::uint32_t half(std::size_t at) const { return bytes_[at] | std::uint32_t{bytes_[at + 1]} << 8; }
   /// Within the code a branch is as far as before. A number among the code may look like a branch: it leads nowhere.
   void branch(Hash& hash, std::uint32_t opcode, std::uint32_t target, std::uint32_t word) const {

@@ -151,6 +151,7 @@ void ReplayPath::set_up_transfers() {
                   Outcome& o = streams_[stream].history[number % kHistory];
                   o.last = at;
                   o.delivered = delivered;
+                  if (time_[stream] == kNever) wake(stream);
                   wake_those_behind(stream);
                 },
             .program_free = [this, stream] { wake(stream); }});
@@ -278,7 +279,7 @@ inline Picoseconds ReplayPath::released(const Stream& s) const {
   if (r.back != 0) {
     const std::uint64_t before = s.number - r.back;
     const Outcome& o = s.history[before % kHistory];
-    from = o.number != before ? start_ : r.from_first ? o.first : o.last;  // what comes later after all holds up nothing
+    from = o.number != before ? start_ : r.from_first ? o.first : o.last;
     if (from == kNever) return kNever;
   }
   std::uint64_t edge = s.clock.edge_at_or_after(from) + r.gap;
@@ -404,8 +405,9 @@ void ReplayPath::send(ReplayPipe::Burst& burst) {
     bytes_ += burst.bytes;
     (burst.write ? m.write_bytes : m.read_bytes) += burst.bytes;
   }
-  if (sdram || !memory_only_) return memory_.submit(burst);
-  serve(burst, memory_.slave_of(burst), burst.issued);
+  // The crossbar takes a request before its time; without it there is nothing that would hold it back.
+  if (memory_only_) return add_served({&burst, burst.issued, true});
+  memory_.submit(burst);
 }
 
 /// The internal RAM takes one burst at a time, registers one word of a master at a time.
@@ -426,9 +428,13 @@ void ReplayPath::serve(MemRequest& r, bus::Slave slave, Picoseconds arrival) {
     if (aside) delivered(static_cast<Slot&>(r), done);
   }
   if (!is_core(r.master)) static_cast<ReplayPipe::Burst&>(r).delivered = done;
-  const auto place = std::upper_bound(served_.begin(), served_.end(), done,
-                                      [](Picoseconds t, const Served& s) { return t < s.at; });
-  served_.insert(place, {&r, done});
+  add_served({&r, done});
+}
+
+void ReplayPath::add_served(const Served& s) {
+  const auto place = std::upper_bound(served_.begin(), served_.end(), s.at,
+                                      [](Picoseconds t, const Served& other) { return t < other.at; });
+  served_.insert(place, s);
   served_at_ = served_.front().at;
 }
 
@@ -459,6 +465,10 @@ void ReplayPath::finish_served() {
   const Served first = served_.front();
   served_.erase(served_.begin());
   served_at_ = served_.empty() ? kNever : served_.front().at;
+  if (first.arrives) {
+    if (first.request->address >= memory_.map().ddr_base) return memory_.submit(*first.request);
+    return serve(*first.request, memory_.slave_of(*first.request), first.at);
+  }
   if (!memory_only_) return memory_.slave_done(*first.request, first.at, false);
   first.request->first = first.request->last = first.at;
   completed(*first.request);
@@ -602,6 +612,7 @@ void ReplayPath::complete(Slot& slot) {
   if (Outcome& o = streams_[m.stream].history[slot.number % kHistory]; o.number == slot.number) {
     o.first = slot.write ? slot.came : slot.first;
     o.last = slot.last;
+    if (o.delivered == kNever) o.delivered = slot.last;
   }
   if (time_[m.stream] == kNever) wake(m.stream);
   if (cross_) [[unlikely]]

@@ -31,8 +31,8 @@ class ReplayPath final : private memsys::MemoryHost {
              const ReplayParams& params, bool memory_only);
 
   /// The figures shall be comparable with those of a run in the recorded window: nothing is played after its end, as
-  /// the video ports' later requests are not in the trace, nor for long after the core's last record, if the core was at
-  /// work up to the window's end and has now done all sooner.
+  /// the video ports' later requests are not in the trace, nor for long after the core's last record, if the core was
+  /// at work up to the window's end and has now done all sooner.
   void end_with_window();
   /// Plays what comes before `until`; true: all is played that is to be. @throws UserError for a record that this
   /// memory cannot have
@@ -117,13 +117,14 @@ class ReplayPath final : private memsys::MemoryHost {
   /// its bursts wait for it there.
   struct RamBursts {
     std::uint32_t left = 0;
-    std::vector<std::uint32_t> waits;
+    std::vector<std::uint16_t> waits;
     std::size_t next = 0;
   };
-  /// A request to a slave that is no part of the memory system.
+  /// A request to a slave that is no part of the memory system, or one that is yet to arrive.
   struct Served {
     MemRequest* request;
     Picoseconds at;
+    bool arrives = false;
   };
 
   void set_up_memory(const ReplayParams& params);
@@ -149,6 +150,7 @@ class ReplayPath final : private memsys::MemoryHost {
   void submit_transfer(unsigned stream);
   void send(ReplayPipe::Burst& burst);
   void serve(MemRequest& r, bus::Slave slave, Picoseconds arrival);
+  void add_served(const Served& s);
   void delivered(const Slot& slot, Picoseconds at);
   std::uint32_t ram_waits(const MemRequest& r);
   void finish_served();

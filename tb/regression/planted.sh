@@ -81,11 +81,10 @@ for planted; do
       firmware prefetch kernels/method_staged.c \
         's/^    if \(n \+ TILE_BANKS < tiles->tiles\) (request\(b, stream->next.*)$/    (void)0;/
          s/^    const tile_stream_t \*stream = .*/&\n    if (n >= TILE_BANKS) request(b, stream->next, (int)stream->next_patterns, in);/'
-      waits=$(line_of "$source/sw/firmware/kernels/method_staged.c" 'while \(\*word != value')
       run staged "${window[@]}" &&
         expects staged &&
         run prefetch "${window[@]}" -s firmware.elf="$out/prefetch.elf" &&
-        against=staged blamed prefetch "^blamed: wait_for \(method_staged.c:$waits\) polls longer" ;;
+        against=staged blamed prefetch '^blamed: run_tiles \(method_staged.c:[0-9]+\) polls longer in wait_for' ;;
     ahead) # a code is loaded where it is used, not before the store
       codes=(-s firmware.kernel=codes)
       firmware ahead kernels/remap_codes.S \

@@ -61,10 +61,10 @@ inline void make_transfer(Rng& rng, trace::Record& r) {
   r.priority = static_cast<std::uint8_t>(rng.below(8));
   for (auto& waits : r.ram_waits)
     for (std::uint64_t n = rng.below(2) ? rng.below(std::min<std::uint64_t>(t.bytes() + 1, 40)) : 0; n > 0; --n)
-      waits.push_back(static_cast<std::uint32_t>(rng.below(300)));
+      waits.push_back(static_cast<std::uint16_t>(rng.below(300)));
 }
 
-/// A random record of a stream that is valid as its `number`-th.
+/// A random record of a stream (0: the core, 1 and 2: video, 3: transfers) that is valid as its `number`-th.
 inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t number) {
   using trace::Release;
   trace::Record r;
@@ -80,7 +80,7 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
   } else if (r.kind == trace::Kind::kStep) {
     r.master = Master::kArmD;
     r.service = rng.below(10'000);
-  } else if (stream == 1 && rng.below(6) == 0) {
+  } else if (stream == 3) {
     make_transfer(rng, r);
   } else {
     r.write = stream == 1 || (stream == 0 && rng.below(2));
@@ -119,18 +119,30 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
   return r;
 }
 
-struct MadeTrace {
+/// The same with a transfer controller of the EDMA, in stream 3.
+inline trace::TraceInfo edma_info() {
   trace::TraceInfo info = board_info();
-  std::vector<std::vector<trace::Record>> records{3};
+  info.streams.emplace_back();
+  info.masters.push_back({edma_read(1), "edma_tc1", 3, 4, 4, false});
+  info.masters.push_back({edma_write(1), "edma_tc1", 3, 4, 4, false});
+  info.edma = {8, 256, 4, 2, 2, 40'000};
+  info.core_until = info.end - 1'000;
+  return info;
+}
+
+struct MadeTrace {
+  trace::TraceInfo info = edma_info();
+  std::vector<std::vector<trace::Record>> records;
   std::string bytes;
 };
 
 inline MadeTrace make_trace(std::uint64_t seed, std::size_t per_stream) {
   MadeTrace t;
   Rng rng(seed);
-  trace::TraceWriter writer(3);
+  t.records.resize(t.info.streams.size());
+  trace::TraceWriter writer(static_cast<unsigned>(t.records.size()));
   for (std::size_t n = 0; n < per_stream; ++n)
-    for (unsigned s = 0; s < 3; ++s) {
+    for (unsigned s = 0; s < t.records.size(); ++s) {
       t.records[s].push_back(random_record(rng, s, n));
       writer.add(s, t.records[s].back());
     }

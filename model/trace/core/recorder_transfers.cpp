@@ -284,7 +284,7 @@ void BusRecorder::note_ram_waits(const Controller& c, const Controller::Elsewher
   if (burst.waited == 0 || of.number < first_pending) return;
   auto& waits = s.pending[of.number - first_pending].record.ram_waits[burst.write];
   waits.resize(std::max<std::size_t>(waits.size(), of.burst + 1));
-  waits[of.burst] = static_cast<std::uint32_t>(burst.waited);
+  waits[of.burst] = static_cast<std::uint16_t>(std::min<std::uint64_t>(burst.waited, 0xFFFF));
 }
 
 void BusRecorder::interrupt(Picoseconds at) {

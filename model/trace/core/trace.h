@@ -72,7 +72,7 @@ struct Record {
   std::uint8_t burst = 0;       ///< kTransfer: default burst size, bytes
   /// kTransfer: clocks of the core for which its bursts that read and that write internal RAM waited for the core's
   /// accesses to it, in the order of the bursts; the last ones that did not wait are left out.
-  std::array<std::vector<std::uint32_t>, 2> ram_waits;
+  std::array<std::vector<std::uint16_t>, 2> ram_waits;
   bool on_bus() const { return kind == Kind::kRequest || kind == Kind::kAside; }
   friend bool operator==(const Record&, const Record&) = default;
 };

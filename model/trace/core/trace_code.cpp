@@ -76,7 +76,7 @@ void encode_transfer(const Record& r, CodeState& s, std::string& out) {
   if (changed & kRamWaits)
     for (const auto& waits : r.ram_waits) {
       put_number(out, waits.size());
-      for (const std::uint32_t n : waits) put_number(out, n);
+      for (const std::uint16_t n : waits) put_number(out, n);
     }
   s.transfer = t;
   s.burst = r.burst;
@@ -197,8 +197,8 @@ void decode_transfer(ByteReader& in, CodeState& s, Record& r) {
     for (auto& waits : r.ram_waits)
       for (std::uint64_t left = in.number(); left != 0; --left) {
         const std::uint64_t n = in.number();
-        if (n >> 28 || waits.size() == t.bytes()) throw BadTrace("an impossible transfer");
-        waits.push_back(static_cast<std::uint32_t>(n));
+        if (n >> 16 || waits.size() == t.bytes()) throw BadTrace("an impossible transfer");
+        waits.push_back(static_cast<std::uint16_t>(n));
       }
   if (s.burst == 0) throw BadTrace("an impossible transfer");
   r.transfer = t;
