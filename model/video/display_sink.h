@@ -10,13 +10,13 @@
 namespace fovea::video {
 
 struct DisplayStats : StatGroup {
-  Counter frames{*this, "frames", "count", "complete frames displayed"};
-  Counter repeated{*this, "repeated", "count",
+  Counter frames{*this, "frames", "1", "complete frames displayed"};
+  Counter repeated{*this, "repeated", "1",
                    "frames with the same buffer address and the same pixels as the one before"};
-  Counter underflows{*this, "underflows", "count",
+  Counter underflows{*this, "underflows", "1",
                      "bursts of picture data that came after their first pixel was due"};
-  Counter broken_frames{*this, "broken_frames", "count", "frames that ended early"};
-  Counter violations{*this, "violations", "count",
+  Counter broken_frames{*this, "broken_frames", "1", "frames that ended early"};
+  Counter violations{*this, "violations", "1",
                      "lines at a wrong time, out of order or of wrong length"};
   DisplayStats() : StatGroup("display") {}
 };

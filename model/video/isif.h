@@ -17,14 +17,14 @@
 namespace fovea::video {
 
 struct CaptureStats : StatGroup {
-  Counter frames{*this, "frames", "count", "frames captured: both fields, first one first; without CCDMD, fields"};
-  Counter fields{*this, "fields", "count", "fields captured"};
-  Counter bursts{*this, "bursts", "count", "bursts of captured data handed to memory"};
-  Counter overflows{*this, "overflows", "count",
+  Counter frames{*this, "frames", "1", "frames captured: both fields, first one first; without CCDMD, fields"};
+  Counter fields{*this, "fields", "1", "fields captured"};
+  Counter bursts{*this, "bursts", "1", "bursts of captured data handed to memory"};
+  Counter overflows{*this, "overflows", "1",
                     "bursts lost because the write buffer was full"};
-  Counter corrected_codes{*this, "corrected_codes", "count",
+  Counter corrected_codes{*this, "corrected_codes", "1",
                           "timing codes with one wrong bit, corrected"};
-  Counter bad_codes{*this, "bad_codes", "count", "timing codes beyond correction"};
+  Counter bad_codes{*this, "bad_codes", "1", "timing codes beyond correction"};
   CaptureStats() : StatGroup("capture") {}
 };
 

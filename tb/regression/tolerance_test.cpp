@@ -23,6 +23,12 @@ TEST(ToleranceTest, ZeroDemandsTheSameNumber) {
   EXPECT_EQ(deviation_of(std::nextafter(0.004, 0), 0.004, {}, false), kLower);
 }
 
+TEST(ToleranceTest, TheTextHasTheFiguresUnit) {
+  const Tolerance both{2.5, 0.01};
+  EXPECT_EQ(both.text("MB/s"), "1.0 % or 2.5 MB/s");
+  for (const char* unit : {"", "1", "ratio"}) EXPECT_EQ(both.text(unit), "1.0 % or 2.5");
+}
+
 TEST(ToleranceTest, AbsoluteLimitIsStillWithin) {
   const Tolerance t{5, 0};
   EXPECT_EQ(deviation_of(105, 100, t, true), kWithin);

@@ -36,6 +36,12 @@ replay() { "$fovea" replay "$@" -o "$out/replay"; }
 expect record 0 -- run -o "$out/run" --bus-trace "$trace"
 expect without 0 -- run -o "$out/without"
 cmp "$out/run/stats.json" "$out/without/stats.json" || fail 'recording changes the run'
+# Also where the recorder looks on while core and EDMA work in internal RAM side by side.
+staged=(-s firmware.kernel=staged -s video.width=320 -s video.height=240 -s firmware.repeat=4)
+expect staged_recorded 0 -- run "${staged[@]}" -o "$out/staged" --bus-trace "$out/staged.trace"
+expect staged_without 0 -- run "${staged[@]}" -o "$out/staged_without"
+expect staged_memory_only 0 '^replayed [0-9]{5,} requests' -- replay "$out/staged.trace" --memory-only
+cmp "$out/staged/stats.json" "$out/staged_without/stats.json" || fail 'recording changes a run by staged'
 expect strict 0 -- run -o "$out/strict" --sync=strict --bus-trace "$out/strict.trace"
 cmp "$trace" "$out/strict.trace" || fail 'strict and default record different traces'
 # The EDMA's copies between places of the SDRAM wait for nothing that the trace does not hold.

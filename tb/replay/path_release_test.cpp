@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -278,6 +279,61 @@ TEST(ReplayPathTest, AWordBehindAFullInputRegisterIsAcknowledgedWhenThatIsFree) 
   // Not before the 16 clocks of the first burst's data.
   EXPECT_GT(p.issued[0][1], 1'000'000u + 16 * 4'115u);
   EXPECT_EQ(p.issued[0][2], p.issued[0][1]);
+}
+
+/// A core that reads `reads` times, a microsecond after the one before, and a display that reads every ten up to the end
+/// of the window.
+struct Windowed {
+  trace::TraceInfo info = board_info();
+  Listed l;
+  app::ReplayParams params;
+  std::map<std::string, double> figures;
+  Outcomes seen;
+  static constexpr unsigned kLines = 89;
+
+  Windowed(unsigned reads, Picoseconds rest, bool comparable = true) {
+    info.core_until = info.end - rest;
+    l.records[0] = {read_at(2'000'000, 0x1000)};
+    l.records[0].resize(reads, after(1, true, 297, 0x9000));
+    for (unsigned n = 0; n < kLines; ++n) {
+      l.records[2].push_back(read_at(2'000'000 + n * 10'000'000, n * 64));
+      l.records[2].back().master = Master::kVpbe;
+    }
+    app::ReplayPath path("t", info, l, params, false);
+    if (comparable) path.end_with_window();
+    const Subscription observing = path.observe(seen);
+    EXPECT_TRUE(path.run_before(kNever));
+    EXPECT_TRUE(path.run_before(kNever)) << "it stays at its end";
+    path.finish();
+    for (const app::StatRow& row : path.stats())
+      if (const auto* const n = std::get_if<std::uint64_t>(&row.value)) figures[row.name] = static_cast<double>(*n);
+  }
+  Picoseconds latest() const { return *std::max_element(seen.issued[0].begin(), seen.issued[0].end()); }
+};
+
+TEST(ReplayPathTest, TheRecordedWindowEndsAReplay) {
+  const Windowed slow(2'000, 1'000'000);
+  EXPECT_LT(slow.latest(), slow.info.end);
+  EXPECT_GT(slow.latest(), slow.info.end - 3'000'000);
+  EXPECT_GT(slow.figures.at("replay.left_out"), 1'000);
+  EXPECT_EQ(slow.figures.at("replay.requests") + slow.figures.at("replay.left_out"), 2'000 + Windowed::kLines);
+  const Windowed all(2'000, 1'000'000, false);
+  EXPECT_EQ(all.figures.at("replay.requests"), 2'000 + Windowed::kLines);
+  EXPECT_EQ(all.figures.at("replay.left_out"), 0);
+}
+
+/// It does not go on for longer after the core's last record than it did when it was recorded; unless the core had
+/// nothing to do for more than a twentieth of the window by then.
+TEST(ReplayPathTest, WhenTheCoreHasDoneAllAReplayEnds) {
+  const trace::TraceInfo info = board_info();
+  const Picoseconds most = (info.end - info.start) / 20;
+  const Windowed fast(100, most);
+  EXPECT_GT(fast.figures.at("replay.left_out"), 50);
+  EXPECT_LT(fast.latest(), 200'000'000u);
+  EXPECT_GT(fast.latest(), 100'000'000u + most);
+  const Windowed idle(100, most + 1);
+  EXPECT_EQ(idle.figures.at("replay.left_out"), 0);
+  EXPECT_EQ(idle.latest(), idle.info.end - 18'000'000);
 }
 
 TEST(ReplayPathTest, MarksKeepTheirPlace) {

@@ -26,7 +26,7 @@ std::string expected_text(const Expectation& e, const Metric& got) {
 
 std::string allowed_text(const Expectation& e) {
   const bool none = e.tolerance.allowed(e.value.value_or(0)) == 0;
-  std::string out = none ? "no deviation" : e.tolerance.text();
+  std::string out = none ? "no deviation" : e.tolerance.text(e.unit);
   if (e.worse == Worse::kHigher) out += none ? " upwards" : " higher";
   if (e.worse == Worse::kLower) out += none ? " downwards" : " lower";
   return "allowed: " + out;

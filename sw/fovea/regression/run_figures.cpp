@@ -156,7 +156,7 @@ std::string exact_text(double value, bool whole) {
 std::string figure_text(const Metric& metric) {
   if (!metric.value) return "no value";
   if (metric.whole && metric.unit != "B") {
-    const std::string unit = metric.unit == "1" || metric.unit == "count" ? "" : " " + metric.unit;
+    const std::string unit = metric.unit == "1" ? "" : " " + metric.unit;
     return exact_text(*metric.value, true) + unit;
   }
   return app::human_text(*metric.value, metric.unit);

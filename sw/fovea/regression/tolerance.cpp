@@ -25,11 +25,14 @@ double Tolerance::allowed(double expected) const {
   return std::max(absolute, relative * std::abs(expected));
 }
 
-std::string Tolerance::text() const {
+std::string Tolerance::text(const std::string& unit) const {
   if (absolute == 0 && relative == 0) return "none";
   std::string out;
   if (relative != 0) out = fmt::format("{} %", app::number_text(100 * relative));
-  if (absolute != 0) out += (out.empty() ? "" : " or ") + app::number_text(absolute);
+  if (absolute != 0) {
+    const bool plain = unit.empty() || unit == "1" || unit == "ratio";
+    out += (out.empty() ? "" : " or ") + app::number_text(absolute) + (plain ? "" : " " + unit);
+  }
   return out;
 }
 

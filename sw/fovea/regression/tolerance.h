@@ -12,8 +12,8 @@ struct Tolerance {
 
   /// The deviation that is allowed of `expected`.
   double allowed(double expected) const;
-  /// "1 %", "0.5", "1 % or 0.5"; "none" for zero.
-  std::string text() const;
+  /// "1 %", "0.5 MB/s", "1 % or 0.5 MB/s"; "none" for zero. `unit` is the figure's, if there is one.
+  std::string text(const std::string& unit = "") const;
 };
 
 /// Reads "1%", "0.5" or "1% or 0.5". `where` begins the message. @throws UserError: not a number,

@@ -60,8 +60,12 @@ std::string jump_words(const std::vector<TrendLine>& lines, const TrendLine& add
     before = j.before;
     after = j.after;
     const auto a = trend_figure(*before, j.figure), b = trend_figure(*after, j.figure);
-    out += fmt::format("  {} jumps from {} of commit {} to {}{}\n", j.figure, figure_text(*a), before->commit,
-                       figure_text(*b), std::isinf(j.relative) ? "" : " (" + percent_text(j.relative) + ")");
+    const bool alike = figure_text(*a) == figure_text(*b);
+    const auto text = [alike](const Metric& m) {
+      return alike ? fmt::format("{:.6g} {}", *m.value, m.unit) : figure_text(m);
+    };
+    out += fmt::format("  {} jumps from {} of commit {} to {}{}\n", j.figure, text(*a), before->commit,
+                       text(*b), std::isinf(j.relative) ? "" : " (" + percent_text(j.relative) + ")");
   }
   return out.empty() ? "" : out + fmt::format("  blamed: {}\n", blame_of_jump(*before, *after));
 }
