@@ -281,8 +281,8 @@ TEST(ReplayPathTest, AWordBehindAFullInputRegisterIsAcknowledgedWhenThatIsFree) 
   EXPECT_EQ(p.issued[0][2], p.issued[0][1]);
 }
 
-/// A core that reads `reads` times, a microsecond after the one before, and a display that reads every ten up to the end
-/// of the window.
+/// A core that reads `reads` times, a microsecond after the one before, and a display that reads every ten up to the
+/// end of the window.
 struct Windowed {
   trace::TraceInfo info = board_info();
   Listed l;
