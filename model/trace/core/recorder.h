@@ -69,10 +69,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   void trigger_written(Master writer, Picoseconds at) override;
   void requested(const TransferRequest& request, const TransferTrigger& by, unsigned burst, Picoseconds ready,
                  Picoseconds at) override;
-  void coded(const TransferTrigger& by, Picoseconds) override {
-    code_ = by;
-    code_seen_ = false;
-  }
+  void coded(const TransferTrigger& by, Picoseconds at) override;
   void completion_pulsed(Picoseconds at) override {
     pulse_ = code_;
     pulsed_at_ = at;
@@ -183,6 +180,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   Pending& append_step(Picoseconds at);
   void note_step(std::uint64_t room_waits, std::uint64_t asked);
   void note_sleep();
+  void note_ends(Picoseconds at);
   void note_wait(std::uint64_t began, std::uint64_t seen, std::uint64_t room_waits, const WaitEnd& end);
   void release_behind_latest(Stream& s, Pending& p, Picoseconds at, unsigned align);
   std::size_t interrupt_before(std::uint64_t woke) const;
@@ -231,6 +229,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
     Picoseconds at;
     TransferTrigger by;
     Picoseconds pulsed;  // 0: not by a completion code
+    bool rose = true;    // false: its transfer ended while the interrupt of another one was pending
   };
   std::vector<Risen> interrupts_;
   Surroundings surroundings_;
@@ -249,6 +248,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   TransferTrigger code_, pulse_;          // what set the last completion code; what caused the last interrupt by one
   Picoseconds pulsed_at_ = 0;
   bool code_seen_ = true;
+  std::deque<TransferTrigger> ended_;     // of the latest codes, those since the core's latest register access
   std::array<Flag, 32> flags_{};
   std::size_t next_flag_ = 0;
   Looks ram_looks_, register_looks_;

@@ -16,12 +16,19 @@ constexpr unsigned kLooksOfALoop = 3;
 constexpr std::uint64_t kClocksOfALoop = 64;
 /// From a completion code's pulse to the core's interrupt line.
 constexpr Picoseconds kToTheLine = kPsPerUs;
+/// A core that woke so many clocks ago serves an interrupt, and sleeps again when it has done so.
+constexpr std::uint64_t kClocksOfAHandler = 4096;
+constexpr std::size_t kEndsKept = 16;
 
 }  // namespace
 
 /// A register access of the core: of its write buffer, or one that it waits for.
 void BusRecorder::submit_aside(const MemRequest& r) {
   if (!r.write || core_(&r).asked == 0) {
+    if (open_ && r.issued >= start_) {
+      note_sleep();
+      note_ends(r.issued);
+    }
     register_access_ = true;
     const std::uint64_t now = clock_.running() ? clock_.edge_at_or_after(r.issued) : 0;
     if (r.write || register_looks_.count == 0 || register_looks_.place != r.address)
@@ -194,7 +201,7 @@ void BusRecorder::note_step(std::uint64_t room_waits, std::uint64_t asked) {
 
 std::size_t BusRecorder::interrupt_before(std::uint64_t woke) const {
   std::size_t n = interrupts_.size();
-  while (n > 0 && clock_.edge_at_or_after(interrupts_[n - 1].at) > woke) --n;
+  while (n > 0 && (!interrupts_[n - 1].rose || clock_.edge_at_or_after(interrupts_[n - 1].at) > woke)) --n;
   return n > 0 ? n - 1 : interrupts_.size();
 }
 
@@ -225,6 +232,42 @@ void BusRecorder::note_sleep() {
   }
   const std::uint64_t room_waits = now.room_waits - room_waits_at_open_;
   note_step(room_waits, woke - std::min(room_waits, woke));
+}
+
+void BusRecorder::coded(const TransferTrigger& by, Picoseconds at) {
+  code_ = by;
+  code_seen_ = false;
+  ended_.push_back(by);
+  ended_.back().at = at;
+  if (ended_.size() > kEndsKept) ended_.pop_front();
+}
+
+/// Transfers that ended while the core served another interrupt: it would have slept until then if they had ended
+/// later. The register access at `at` is the first one that may see it.
+void BusRecorder::note_ends(Picoseconds at) {
+  if (ended_.empty()) return;
+  const auto ended = std::exchange(ended_, {});
+  const CoreState now = core_(nullptr);
+  const std::uint64_t woke = now.woke - std::min(now.origin, now.woke), to = clock_.edge_at_or_after(at);
+  if (now.woke == 0 || to > woke + kClocksOfAHandler) return;
+  for (const TransferTrigger& by : ended) {
+    if (clock_.edge_at_or_after(by.at) <= woke) continue;
+    const auto of = [&](const Risen& i) { return i.by.number == by.number && i.by.controller == by.controller; };
+    const auto risen = std::find_if(interrupts_.rbegin(), interrupts_.rend(), of);
+    std::size_t event = static_cast<std::size_t>(interrupts_.rend() - risen) - 1;
+    if (risen == interrupts_.rend() || risen->pulsed == 0) {
+      event = interrupts_.size();
+      const Picoseconds latest = interrupts_.empty() ? by.at : std::max(by.at, interrupts_.back().at);
+      interrupts_.push_back({latest, by, by.at, false});
+      interrupts_.back().by.at = latest;
+    }
+    Pending& p = append_step(at);
+    release_behind_latest(streams_[0], p, at, 1);
+    p.record.release = Release::kWhen;
+    p.record.event = event;
+    const std::uint64_t room_waits = now.room_waits - room_waits_at_open_;
+    note_step(room_waits, to - std::min(room_waits, to));
+  }
 }
 
 /// The program has waited in a loop from `began` on and has `seen` the end, all in clocks of the core; without a
