@@ -183,7 +183,7 @@ void ReplayPath::next_record(unsigned stream) {
   s.number = s.played;
   s.valid = source_.next(stream, s.record);
   if (s.valid && s.record.kind == trace::Kind::kRequest) check(s.record, s);
-  if (stream == 0 && !s.valid) core_has_ended();
+  if (stream == 0 && !s.valid) core_has_ended(info_.core_until);
 }
 
 /// While the core sleeps, what goes on is chosen when its time is asked for.
@@ -195,7 +195,7 @@ void ReplayPath::next_in_wake_order() {
   if (wake_order_->next(n)) return set_core_record(n);
   s.valid = asleep_ = wake_order_->asleep();
   settled_ = false;
-  if (!s.valid) core_has_ended();
+  if (!s.valid) core_has_ended(info_.core_until);
 }
 
 void ReplayPath::end_with_window() {
@@ -203,10 +203,11 @@ void ReplayPath::end_with_window() {
   if (end_with_window_) stop_ = info_.end;
 }
 
-void ReplayPath::core_has_ended() {
+/// The core has done all that it did until `recorded`, at most, when the trace was recorded.
+void ReplayPath::core_has_ended(Picoseconds recorded) {
   // A core that slept for longer before the window's end had done all it had to do by then.
   constexpr Picoseconds kAtWork = 20;
-  const Picoseconds rest = info_.end - info_.core_until;
+  const Picoseconds rest = info_.end - recorded;
   if (end_with_window_ && rest <= (info_.end - info_.start) / kAtWork) stop_ = std::min(stop_, core_last_ + rest);
 }
 
@@ -222,6 +223,9 @@ void ReplayPath::set_core_record(WakeOrder::Numbered& n) {
 std::uint8_t ReplayPath::wake_core() {
   if (!asleep_ || settled_) return trace::kInterrupt;
   WakeOrder::Choice choice = wake_order_->choose([this](const trace::Record& r) { return event(r); });
+  // Only interrupts at recorded times will wake it any more.
+  if (!std::exchange(transfers_done_, wake_order_->transfers_done()) && transfers_done_)
+    core_has_ended(wake_order_->latest_transfer());
   set_core_record(choice.first);
   chosen_ = true;
   settled_ = choice.settled;
@@ -339,7 +343,7 @@ void ReplayPath::prepare(unsigned stream) {
       set_time(stream, at);
       return;
     }
-    if (r.kind == trace::Kind::kMark) marks_.push_back({r.address, at});
+  if (r.kind == trace::Kind::kMark) marks_.push_back({r.address, at});
     if (stream == 0) core_last_ = std::max(core_last_, at);
     if (on_issue) on_issue(stream, at);
     note_outcome(s, at, at);
@@ -395,16 +399,15 @@ void ReplayPath::submit_transfer(unsigned stream) {
 void ReplayPath::send(ReplayPipe::Burst& burst) {
   const bool sdram = burst.address >= memory_.map().ddr_base;
   if (sdram) {
-    MasterState& m = masters_[index(burst.master)];
+    const MasterState& m = masters_[index(burst.master)];
     if (std::uint64_t{burst.address - memory_.map().ddr_base} + burst.bytes > memory_.store().size())
       throw UserError(fmt::format("trace '{}': a transfer of {}: {} bytes at 0x{:08x}: outside the SDRAM of {} MiB "
                                   "(ddr.part)", name_, m.label, burst.bytes,
                                   burst.address - memory_.map().ddr_base, memory_.store().size() >> 20));
     ++requests_;
-    ++m.transactions;
     bytes_ += burst.bytes;
-    (burst.write ? m.write_bytes : m.read_bytes) += burst.bytes;
   }
+  if (sdram || !memory_only_) masters_[index(burst.master)].count(burst.write, burst.bytes);
   // The crossbar takes a request before its time; without it there is nothing that would hold it back.
   if (memory_only_) return add_served({&burst, burst.issued, true});
   memory_.submit(burst);
@@ -528,11 +531,10 @@ void ReplayPath::issue() {
     on_issue(stream, next_time_);
   if (!aside) {
     ++requests_;
-    ++m.transactions;
-    m.at_recorded_time += r.release == trace::Release::kAt && s.number > 0;
     bytes_ += r.bytes;
-    (r.write ? m.write_bytes : m.read_bytes) += r.bytes;
+    m.at_recorded_time += r.release == trace::Release::kAt && s.number > 0;
   }
+  if (!aside || !memory_only_) m.count(r.write, r.bytes);
   if (m.priority != r.priority) {
     m.priority = r.priority;
     memory_.crossbar().set_priority(r.master, r.priority);

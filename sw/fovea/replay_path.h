@@ -90,7 +90,12 @@ class ReplayPath final : private memsys::MemoryHost {
     std::array<unsigned, 2> turn{};  // reads, writes: the slot that ended first, or will
     unsigned stream = 0;
     std::uint8_t priority = 0xFF;
-    std::uint64_t read_bytes = 0, write_bytes = 0, transactions = 0;
+    std::uint64_t read_bytes = 0, write_bytes = 0, transactions = 0;  // on the crossbar, or where there is none
+                                                                      // at the controller
+    void count(bool write, unsigned bytes) {
+      ++transactions;
+      (write ? write_bytes : read_bytes) += bytes;
+    }
     std::uint64_t at_recorded_time = 0;          // but for the stream's first record
     std::shared_ptr<bus::LatencyStats> latency;  // with others of this label
   };
@@ -137,7 +142,7 @@ class ReplayPath final : private memsys::MemoryHost {
   void fetch(unsigned stream);
   void next_record(unsigned stream);
   void next_in_wake_order();
-  void core_has_ended();
+  void core_has_ended(Picoseconds recorded);
   void leave_out_the_rest();
   void set_core_record(WakeOrder::Numbered& n);
   std::uint8_t wake_core();
@@ -181,7 +186,7 @@ class ReplayPath final : private memsys::MemoryHost {
   std::array<MasterState, kMasterCount> masters_;
   std::vector<Stream> streams_;
   std::optional<WakeOrder> wake_order_;  // of the core, if transfers wake it
-  bool asleep_ = false, chosen_ = false, settled_ = false;
+  bool asleep_ = false, chosen_ = false, settled_ = false, transfers_done_ = false;
   std::array<Picoseconds, kMasterCount> time_{};  // of each stream's next request
   std::uint32_t due_ = 0;                         // streams whose time is known
   std::array<std::uint8_t, kMasterCount> waits_for_{};  // stream that holds up each, by kWhen

@@ -9,6 +9,8 @@ bool WakeOrder::read(Numbered& out) {
   at_end_ = at_end_ || !source_.next(stream_, out.record);
   if (at_end_) return false;
   out.number = numbers_++;
+  if (wakes(out.record) && by_transfer(out.record))
+    latest_transfer_ = std::max(latest_transfer_, info_.interrupts[out.record.event].at);
   return true;
 }
 
@@ -26,9 +28,9 @@ bool WakeOrder::next(Numbered& out) {
   return false;
 }
 
-std::size_t WakeOrder::first(bool by_transfer) const {
+std::size_t WakeOrder::first(bool transfer) const {
   const auto found =
-      std::find_if(ahead_.begin(), ahead_.end(), [&](const Block& b) { return of_transfer(b) == by_transfer; });
+      std::find_if(ahead_.begin(), ahead_.end(), [&](const Block& b) { return by_transfer(b.front().record) == transfer; });
   return static_cast<std::size_t>(found - ahead_.begin());
 }
 

@@ -35,6 +35,10 @@ class WakeOrder {
   bool asleep() const { return !ahead_.empty(); }
   /// While asleep: which block goes on.
   Choice choose(const Time& time);
+  /// While asleep: no transfer in the trace will wake the core any more.
+  bool transfers_done() const { return at_end_ && first(true) == ahead_.size(); }
+  /// When the latest transfer of those that woke it did so in the recorded run.
+  Picoseconds latest_transfer() const { return latest_transfer_; }
   /// The first record of the chosen block has been played.
   void take();
 
@@ -47,11 +51,9 @@ class WakeOrder {
   static bool wakes(const trace::Record& r) {
     return r.release == trace::Release::kWhen && r.source == trace::kInterrupt;
   }
-  bool of_transfer(const Block& b) const {
-    return info_.interrupts[b.front().record.event].source != trace::kInterrupt;
-  }
+  bool by_transfer(const trace::Record& r) const { return info_.interrupts[r.event].source != trace::kInterrupt; }
   /// @return index in ahead_; its size: there is none
-  std::size_t first(bool by_transfer) const;
+  std::size_t first(bool transfer) const;
   void read_ahead();
 
   trace::RecordSource& source_;
@@ -63,6 +65,7 @@ class WakeOrder {
   std::deque<Block> ahead_;  // that follow, in the order of the trace
   std::size_t records_ahead_ = 0, chosen_ = 0;
   bool at_end_ = false;
+  Picoseconds latest_transfer_ = 0;
 };
 
 }  // namespace fovea::app

@@ -69,6 +69,20 @@ class Feed {
     core.asked = asked;
     end(put(Master::kArmD, true, issued * kClock, bytes), last * kClock, last * kClock);
   }
+  /// A register access that the core waits for; again: the register of the one before.
+  void reg(bool write, std::uint64_t issued, std::uint64_t last, bool again = false) {
+    core.asked = 0;
+    const std::uint32_t before = requests_.empty() ? 0 : requests_.back().address;
+    MemRequest& r = requests_.emplace_back();
+    r.master = Master::kArmD;
+    r.write = write;
+    r.bytes = 4;
+    r.address = again ? before : kSdram / 2 + 64 * static_cast<std::uint32_t>(requests_.size());
+    r.issued = issued * kClock;
+    recorder_.submitted(r, false);
+    r.first = r.last = last * kClock;
+    recorder_.register_done(r);
+  }
   BusRecorder& recorder() { return recorder_; }
 
   /// Closes, and gives the records of a stream back out of the file.
@@ -247,29 +261,45 @@ TEST(RecorderCoreTest, TheVictimBufferHasOnePlace) {
   EXPECT_EQ(r[6].room, 5u) << "the victim before";
 }
 
-// After a drain, or an access to a register, the core goes on with the end of the last write.
+// After a drain the core goes on with the end of the last write.
 TEST(RecorderCoreTest, ADrainIsFollowedFromTheLastEnd) {
-  for (const bool is_register : {false, true}) {
+  Feed f;
+  f.read(100, 100, 120, 130);
+  f.store(131, 132, 150);
+  f.core.drains = 1;
+  f.store(163, 164, 180);
+  f.store(170, 180, 190);
+  f.read(172, 190, 200, 208);
+  f.core.drains = 2;
+  f.read(225, 226, 240, 248);
+  const auto r = f.records();
+  expect(r[2], {Release::kAfter, false, 1, 0, 13}, "from the end at 150");
+  expect(r[3], {Release::kAfter, true, 1, 0, 7}, "as ever");
+  expect(r[5], {Release::kAfter, true, 1, 0, 25}, "the last was a read: from its word, 200");
+}
+
+// A register access that the program waits for is a record like any other; further looks at the same register are not.
+TEST(RecorderCoreTest, ARegisterAccessIsARecord) {
+  for (const bool write : {false, true}) {
     Feed f;
     f.read(100, 100, 120, 130);
     f.store(131, 132, 150);
-    if (is_register) {
-      f.core.asked = 0;  // not by the write buffer
-      f.put(Master::kArmD, true, 152 * kClock, 4, false);
-    } else
-      f.core.drains = 1;
+    f.reg(write, 152, 160);
     f.store(163, 164, 180);
-    f.store(170, 180, 190);
-    f.read(172, 190, 200, 208);
-    if (is_register)
-      f.put(Master::kArmD, false, 210 * kClock, 4, false);
-    else
-      f.core.drains = 2;
-    f.read(225, 226, 240, 248);
+    f.reg(false, 190, 200);
+    f.reg(false, 204, 212, true);
+    f.reg(false, 214, 224, true);
+    f.read(230, 230, 240, 248);
     const auto r = f.records();
-    expect(r[2], {Release::kAfter, false, 1, 0, 13}, "from the end at 150");
-    expect(r[3], {Release::kAfter, true, 1, 0, 7}, "as ever");
-    expect(r[5], {Release::kAfter, true, 1, 0, 25}, "the last was a read: from its word, 200");
+    ASSERT_EQ(r.size(), 6u);
+    for (const std::size_t n : {2u, 4u}) {
+      EXPECT_EQ(r[n].kind, trace::Kind::kAside);
+      EXPECT_EQ(r[n].write, write && n == 2);
+    }
+    expect(r[2], {Release::kAfter, false, 1, 0, 2}, "from the store's end");
+    expect(r[3], {Release::kAfter, !write, 1, 0, 3}, "from its end");
+    expect(r[4], {Release::kAfter, false, 1, 0, 10}, "from the store's end");
+    expect(r[5], {Release::kAfter, true, 1, 0, 30}, "from the end of the first look");
   }
 }
 

@@ -88,7 +88,6 @@ inline trace::Record random_record(Rng& rng, unsigned stream, std::uint64_t numb
     r.address = static_cast<std::uint32_t>(rng.below(1u << 20) * 64);
     if (!r.write && r.bytes == 32) r.critical = static_cast<std::uint8_t>(4 * rng.below(8));
     if (r.kind == trace::Kind::kAside) {
-      r.write = true;
       r.critical = 0;
       r.service = rng.below(1'000'000);
     }

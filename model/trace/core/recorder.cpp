@@ -323,14 +323,20 @@ void BusRecorder::end_flight(const MemRequest& r) {
 
 void BusRecorder::mark(std::uint32_t value, Picoseconds at) {
   if (!open_ || at < start_) return;
-  note_sleep();
   Stream& s = streams_[0];
   Pending& p = append(s, at);
   p.done = true;
   p.record.kind = Kind::kMark;
   p.record.address = value;
+  const std::uint64_t by = register_write();
+  const auto step = std::find_if(steps_.begin(), steps_.end(), [&](const Step& one) { return one.number == by; });
+  if (by == kNone || step == steps_.end()) return release_behind_latest(s, p, at, align_);
+  const std::uint64_t from = step->asked + step->room_waits, to = clock_.edge_at_or_after(at);
+  p.record.release = Release::kAfter;
+  p.record.from_first = true;
+  p.reference = by;
   // Rounded down to whole AHB clocks: the player rounds the sum up to an AHB edge again.
-  release_behind_latest(s, p, at, align_);
+  p.record.gap = (to - std::min(from, to)) / align_ * align_;
 }
 
 /// The core has seen out all before it touches a register.

@@ -185,6 +185,8 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   void release_behind_latest(Stream& s, Pending& p, Picoseconds at, unsigned align);
   std::size_t interrupt_before(std::uint64_t woke) const;
   void submit_aside(const MemRequest& r);
+  bool looks_again(const MemRequest& r);
+  std::uint64_t register_write() const;
   void submit_of_transfer(const MemRequest& r, bool to_sdram);
   void release_transfer(Pending& p, const TransferTrigger& by, Picoseconds ready);
   Transfer transfer_of(const TransferTrigger& by) const;
@@ -219,7 +221,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   std::uint64_t last_victim_ = kNone;
   CoreState core_before_;
   std::uint64_t room_waits_at_open_ = 0;
-  bool register_access_ = false;  // of the core since its last request here
+  bool register_access_ = false;  // of the core since its last request here, or it is one
   Clock clock_;
   StreamInfo core_info_;
   Picoseconds core_until_ = 0;  // when its last record went out
@@ -237,10 +239,10 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   Picoseconds scr_start_ = 0;
   std::array<Controller, kTransferControllers> controllers_{};
   std::deque<const MemRequest*> posted_;  // buffered writes to registers under way, oldest first
+  const MemRequest* awaited_ = nullptr;   // the register access that the program waits for
   struct Written {
     Picoseconds at;
     std::uint64_t number;
-    Point point;  // of the record
   };
   /// Places of the core's records that transfers wait for; they may be written long before the transfers.
   std::map<std::uint64_t, std::uint64_t> places_;

@@ -22,35 +22,45 @@ constexpr std::size_t kEndsKept = 16;
 
 }  // namespace
 
-/// A register access of the core: of its write buffer, or one that it waits for.
+/// A register access of the core: of its write buffer, or one that it waits for. Looks at one register again and again
+/// are one record: how many there are is a matter of what the program waits for.
 void BusRecorder::submit_aside(const MemRequest& r) {
-  if (!r.write || core_(&r).asked == 0) {
-    if (open_ && r.issued >= start_) {
+  const bool recorded = open_ && r.issued >= start_;
+  const bool waits = !r.write || core_(&r).asked == 0;
+  if (waits) {
+    if (recorded) {
       note_sleep();
       note_ends(r.issued);
     }
     register_access_ = true;
-    const std::uint64_t now = clock_.running() ? clock_.edge_at_or_after(r.issued) : 0;
-    if (r.write || register_looks_.count == 0 || register_looks_.place != r.address)
-      register_looks_ = {r.address, now, now, 0};
-    register_looks_.latest = now;
-    // A code from before the first look is seen without a wait.
-    if (++register_looks_.count == 1) code_seen_ = true;
-    return;
+    awaited_ = &r;
+    if (looks_again(r)) return;
+  } else {
+    posted_.push_back(&r);
   }
-  posted_.push_back(&r);
   Stream& s = streams_[0];
   const std::uint64_t number = s.next;
   Pending& p = append(s, r.issued);
   p.record.kind = Kind::kAside;
-  p.record.write = true;
+  p.record.write = r.write;
   p.record.bytes = r.bytes;
   p.record.master = r.master;
   p.record.address = r.address;
   if (surroundings_.register_latency) p.record.service = surroundings_.register_latency(r.address);
-  s.history[number % kHistory].write = true;
+  s.history[number % kHistory].write = r.write;
   flights_[index(r.master)].push_back({&r, number});
-  if (open_ && r.issued >= start_) release_core(s, p, r);
+  if (recorded) release_core(s, p, r);
+}
+
+/// Whether the program's access before was to the same register.
+bool BusRecorder::looks_again(const MemRequest& r) {
+  const std::uint64_t now = clock_.running() ? clock_.edge_at_or_after(r.issued) : 0;
+  if (r.write || register_looks_.count == 0 || register_looks_.place != r.address)
+    register_looks_ = {r.address, now, now, 0};
+  register_looks_.latest = now;
+  // A code from before the first look is seen without a wait.
+  if (++register_looks_.count == 1) code_seen_ = true;
+  return register_looks_.count > 1;
 }
 
 /// A burst of a transfer, which follows from its record. Which of them changes a word that the program looks at, and
@@ -74,10 +84,9 @@ void BusRecorder::register_done(const MemRequest& r) {
     return;
   }
   if (stream_of_[index(r.master)] != 0) return;
-  if (const auto it = std::find(posted_.begin(), posted_.end(), &r); it != posted_.end()) {
-    posted_.erase(it);
-    return end_flight(r);
-  }
+  if (const auto it = std::find(posted_.begin(), posted_.end(), &r); it != posted_.end()) posted_.erase(it);
+  if (awaited_ == &r) awaited_ = nullptr;
+  end_flight(r);
   // A loop that looks at a register sees the code that was set since its look before.
   if (r.write || register_looks_.count < 2 || code_seen_) return;
   code_seen_ = true;
@@ -86,27 +95,20 @@ void BusRecorder::register_done(const MemRequest& r) {
              code_.at});
 }
 
+/// The record of the core's write that changes a register now; kNone: it has none.
+std::uint64_t BusRecorder::register_write() const {
+  const MemRequest* by = awaited_ || posted_.empty() ? awaited_ : posted_.front();
+  if (!by) return kNone;
+  const auto& flights = flights_[index(by->master)];
+  const auto it = std::find_if(flights.begin(), flights.end(), [&](const Flight& f) { return f.request == by; });
+  return it == flights.end() ? kNone : it->number;
+}
+
 void BusRecorder::trigger_written(Master writer, Picoseconds at) {
-  if (stream_of_[index(writer)] != 0) return;
-  if (posted_.empty()) {
-    if (!open_ || at < start_) return;
-    note_sleep();
-    Pending& p = append_step(at);
-    // A register is written between two edges of the core's clock.
-    std::uint64_t edge = clock_.edge_at_or_after(at);
-    if (edge > 0 && clock_.edge(edge) > at) --edge;
-    release_behind_latest(streams_[0], p, clock_.edge(edge), 1);
-    if (p.record.release == Release::kAfter) p.record.service = at - clock_.edge(edge);
-    triggers_.push_back({at, streams_[0].next - 1, Point::kEnd});
-    places_.emplace(streams_[0].next - 1, kNone);
-  } else {
-    const auto& flights = flights_[index(writer)];
-    const auto it = std::find_if(flights.begin(), flights.end(),
-                                 [&](const Flight& f) { return f.request == posted_.front(); });
-    if (it == flights.end()) return;
-    triggers_.push_back({at, it->number, Point::kDelivered});
-    places_.emplace(it->number, kNone);
-  }
+  const std::uint64_t by = stream_of_[index(writer)] == 0 ? register_write() : kNone;
+  if (by == kNone) return;
+  triggers_.push_back({at, by});
+  places_.emplace(by, kNone);
   if (triggers_.size() > kTriggersKept) triggers_.pop_front();
 }
 
@@ -157,7 +159,7 @@ void BusRecorder::release_transfer(Pending& p, const TransferTrigger& by, Picose
           std::find_if(triggers_.rbegin(), triggers_.rend(), [&](const Written& w) { return w.at == by.at; });
       if (it == triggers_.rend()) break;
       source = {0, it->number};
-      point = it->point;
+      point = Point::kDelivered;
       break;
     }
     case TransferTrigger::Kind::kSubmitted:

@@ -27,9 +27,9 @@ inline constexpr std::uint8_t kInterrupt = 0xFF;
 /// What a record stands for.
 enum class Kind : std::uint8_t {
   kRequest,   ///< a request to the SDRAM
-  kAside,     ///< a request of the core's write buffer to a register, which keeps the port from others
+  kAside,     ///< a request of the core to a register
   kMark,      ///< no request: the program shows `address` on its phase pins
-  kStep,      ///< no request: the program has waited for others, or writes a register that starts a transfer
+  kStep,      ///< no request: the program has waited for others
   kTransfer,  ///< a request to a transfer controller of the EDMA, whose bursts follow from it
 };
 

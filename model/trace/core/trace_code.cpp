@@ -160,7 +160,7 @@ void decode_request(ByteReader& in, std::uint8_t head, CodeState& s, Record& r, 
   r.locked = kind.locked;
   if (r.kind != Kind::kAside) return;
   r.service = in.number();
-  if (!r.write || r.service > kPsPerMs) throw BadTrace("an impossible access to a register");
+  if (r.service > kPsPerMs) throw BadTrace("an impossible access to a register");
 }
 
 /// A transfer request; what has not changed is that of the one before.
