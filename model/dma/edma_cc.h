@@ -85,6 +85,8 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   std::function<void(std::uint64_t events)> on_events_enabled;
   /// Whose access is at a register, for observers of transfers.
   std::function<Master()> accessing = [] { return Master::kCount; };
+  /// A transfer has been triggered whose completion code, if it has one, has not come.
+  bool active() const { return core_.status() != 0; }
   /// Adds an observer of all transfers.
   Subscription observe(TransferObserver& observer) { return observers_.add(&observer); }
 

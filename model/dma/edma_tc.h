@@ -168,6 +168,8 @@ class EdmaTc : public WithRegs<EdmaTcRegs>,
   unsigned burst() const override;
   void submit(const TransferRequest& request) override;
   bool idle() const override { return reads_.idle() && writes_.idle(); }
+  /// It has no request.
+  bool at_rest() const { return idle() && core_.idle(); }
   /// From now on each outcome is reported at its time, and a burst issued when what it follows from has
   /// happened: for a load on one of the ports, whose bursts queue behind those that are issued already,
   /// and for a bus trace, which notes what has ended before. Before the first burst.

@@ -411,7 +411,11 @@ trace::Surroundings Dm365::transfer_surroundings() {
            whole(params_.cpu.tcm_dma_latency), whole(params_.cpu.tcm_dma_word_clocks),
            params_.config_bus.fast_latency()},
           [this](std::uint32_t address) { return config.latency_at(address); },
-          [this](Master m) { return scr.crossbar().priority(m); }};
+          [this](Master m) { return scr.crossbar().priority(m); },
+          [this] {
+            return edma.active() || std::any_of(edma_tcs.begin(), edma_tcs.end(),
+                                                [](const dma::EdmaTc* tc) { return !tc->at_rest(); });
+          }};
 }
 
 /// Drives the priorities that come from the system module, the EDMA and parameters; the video

@@ -631,7 +631,7 @@ void ReplayPath::wake(unsigned stream) {
   prepare(stream);
   if (stream == next_stream_) {
     find_next();
-  } else if (time_[stream] < next_time_) {
+  } else if (time_[stream] < next_time_ || (time_[stream] == next_time_ && stream < next_stream_)) {
     next_stream_ = stream;
     next_time_ = time_[stream];
   }

@@ -74,6 +74,8 @@ class ChannelController {
     std::uint64_t words_read = 0, words_written = 0;  ///< of parameter sets, over the configuration bus
   };
   const Counts& counts() const { return counts_; }
+  /// CCSTAT, its ACTV included.
+  std::uint32_t status() const;
 
  private:
   enum class Trigger : std::uint8_t { kEvent, kManual, kChain, kQdma };  // ETYPE of QxEy
@@ -110,7 +112,6 @@ class ChannelController {
   void report(const ParamSet& set, bool final, const TransferTrigger& by);
   std::uint64_t pending() const;
   bool errors() const;
-  std::uint32_t status() const;
 
   EdmaRegs& regs_;
   Host& host_;

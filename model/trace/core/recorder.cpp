@@ -54,11 +54,18 @@ BusRecorder::BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_
 void BusRecorder::open(Picoseconds start, Frequency core_clock, Picoseconds core_clock_start, const ClockInfo& scr) {
   scr_ = Clock(scr.frequency, scr.start);
   scr_start_ = scr.start;
-  start_ = start;
-  open_ = true;
-  interrupts_.clear();
   clock_ = Clock(core_clock, core_clock_start);
   core_info_ = {core_clock, core_clock_start, align_, 0};
+  start_ = start;
+  delayed_ = surroundings_.transfers_under_way && surroundings_.transfers_under_way();
+  if (!delayed_) begin(start);
+}
+
+void BusRecorder::begin(Picoseconds start) {
+  start_ = start;
+  open_ = true;
+  delayed_ = false;
+  interrupts_.clear();
   core_before_ = core_(nullptr);
   room_waits_at_open_ = core_before_.room_waits;
   core_before_.room_waits = 0;
@@ -86,6 +93,8 @@ BusRecorder::Pending& BusRecorder::append(Stream& s, Picoseconds issued) {
 void BusRecorder::submitted(const MemRequest& r, bool to_sdram) {
   const unsigned stream = stream_of_[index(r.master)];
   if (stream == kNoStream) return;
+  if (delayed_ && r.issued >= start_ + kLongestDelay) [[unlikely]]
+    begin(r.issued);
   if (of_transfers_ >> index(r.master) & 1u) return submit_of_transfer(r, to_sdram);
   if (!to_sdram) {
     if (stream == 0) submit_aside(r);

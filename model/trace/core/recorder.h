@@ -36,6 +36,8 @@ struct Surroundings {
   /// What a word's access to a register takes.
   std::function<Picoseconds(std::uint32_t address)> register_latency;
   std::function<unsigned(Master)> priority;
+  /// A transfer of the EDMA has been triggered and has not ended.
+  std::function<bool()> transfers_under_way;
 };
 
 /// The core's write buffer (ARM DDI 0198D ch. 6).
@@ -54,8 +56,11 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   BusRecorder(const std::vector<MasterSetup>& masters, unsigned core_align,
               std::function<CoreState(const MemRequest*)> core, Surroundings surroundings = {});
 
-  /// Recording covers [start, end): requests put on their port in it. The clock is the core's, `scr` the crossbar's.
+  /// Recording covers [start, end): requests put on their port in it. If transfers of the EDMA are under way at
+  /// `start`, of which the trace would have only a part, it begins later: with the core's first register access at which
+  /// there are none, but at most kLongestDelay later. The clock is the core's, `scr` the crossbar's.
   void open(Picoseconds start, Frequency core_clock, Picoseconds core_clock_start, const ClockInfo& scr = {});
+  static constexpr Picoseconds kLongestDelay = 20 * kPsPerMs;
   void close(Picoseconds end);
   /// An interrupt line of the core rises.
   void interrupt(Picoseconds at);
@@ -185,7 +190,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   void release_behind_latest(Stream& s, Pending& p, Picoseconds at, unsigned align);
   std::size_t interrupt_before(std::uint64_t woke) const;
   void submit_aside(const MemRequest& r);
-  bool looks_again(const MemRequest& r);
+  bool looks_in_a_loop(const MemRequest& r);
   std::uint64_t register_write() const;
   void submit_of_transfer(const MemRequest& r, bool to_sdram);
   void release_transfer(Pending& p, const TransferTrigger& by, Picoseconds ready);
@@ -202,6 +207,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   bool write_up_to(std::uint8_t index, std::uint64_t number);
   std::uint64_t place_of(std::uint8_t index, std::uint64_t number);
   void list_interrupts(TraceInfo& info);
+  void begin(Picoseconds start);
   void drop_early(Stream& s);
   void write_out(Stream& s, unsigned index, std::size_t keep);
   void write_one(Stream& s, unsigned index);
@@ -255,7 +261,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   std::size_t next_flag_ = 0;
   Looks ram_looks_, register_looks_;
   std::uint32_t not_followed_ = 0;        // masters, one bit each, some of whose records keep their times
-  bool open_ = false;
+  bool open_ = false, delayed_ = false;  // delayed_: to be opened when no transfer is under way
   Picoseconds start_ = 0, end_ = kNever;
   TraceWriter writer_;
 };

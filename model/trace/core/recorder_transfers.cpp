@@ -14,6 +14,8 @@ constexpr std::size_t kTriggersKept = 64;
 /// loop.
 constexpr unsigned kLooksOfALoop = 3;
 constexpr std::uint64_t kClocksOfALoop = 64;
+/// So many looks at one register, one behind the other, may be at as many of its bits; more are a loop.
+constexpr unsigned kLooksRecorded = 8;
 /// From a completion code's pulse to the core's interrupt line.
 constexpr Picoseconds kToTheLine = kPsPerUs;
 /// A core that woke so many clocks ago serves an interrupt, and sleeps again when it has done so.
@@ -23,8 +25,9 @@ constexpr std::size_t kEndsKept = 16;
 }  // namespace
 
 /// A register access of the core: of its write buffer, or one that it waits for. Looks at one register again and again
-/// are one record: how many there are is a matter of what the program waits for.
+/// are not recorded: how many there are is a matter of what the program waits for.
 void BusRecorder::submit_aside(const MemRequest& r) {
+  if (delayed_ && !surroundings_.transfers_under_way()) begin(r.issued);
   const bool recorded = open_ && r.issued >= start_;
   const bool waits = !r.write || core_(&r).asked == 0;
   if (waits) {
@@ -34,7 +37,7 @@ void BusRecorder::submit_aside(const MemRequest& r) {
     }
     register_access_ = true;
     awaited_ = &r;
-    if (looks_again(r)) return;
+    if (looks_in_a_loop(r)) return;
   } else {
     posted_.push_back(&r);
   }
@@ -52,15 +55,15 @@ void BusRecorder::submit_aside(const MemRequest& r) {
   if (recorded) release_core(s, p, r);
 }
 
-/// Whether the program's access before was to the same register.
-bool BusRecorder::looks_again(const MemRequest& r) {
+/// Whether the program's accesses before, kLooksRecorded of them, were to the same register.
+bool BusRecorder::looks_in_a_loop(const MemRequest& r) {
   const std::uint64_t now = clock_.running() ? clock_.edge_at_or_after(r.issued) : 0;
   if (r.write || register_looks_.count == 0 || register_looks_.place != r.address)
     register_looks_ = {r.address, now, now, 0};
   register_looks_.latest = now;
   // A code from before the first look is seen without a wait.
   if (++register_looks_.count == 1) code_seen_ = true;
-  return register_looks_.count > 1;
+  return register_looks_.count > kLooksRecorded;
 }
 
 /// A burst of a transfer, which follows from its record. Which of them changes a word that the program looks at, and

@@ -31,7 +31,6 @@ SITES = [
     Site(LENS, 'choose_scales', 'lut', 1),
     Site(LENS, 'set_row', 'lut', 17),
     Site(LENS, 'build_row', 'lut', 17),
-    Site(LENS, 'cover_table', 'lut', 2),
     Site(LENS, 'append', 'lut', 40),
     Site(PIPELINE, 'captured_frame_done', 'frames', 2),
     Site(PIPELINE, 'capture_field_end', 'frames', 4),
@@ -83,7 +82,7 @@ KINDS = [
     Kind('stores', 25, 'for (uint32_t plant_n = 0; plant_n < {n}u; ++plant_n) '
          'plant_table[plant_n * 8u % 8192u] = plant_n;', ('write_buffer', 'uncached', 'issue'),
          before='static volatile uint32_t plant_table[8192];'),
-    Kind('clean', 900, 'for (uint32_t plant_n = 0; plant_n < {n}u; ++plant_n) dcache_clean_all();', (),
+    Kind('clean', 13, 'for (uint32_t plant_n = 0; plant_n < {n}u; ++plant_n) dcache_clean_all();', (),
          functions=('dcache_clean_all',)),
     Kind('poll', 12, '{{ const uint32_t plant_t = *(volatile uint32_t *)TIMER0_TIM12; '
          'while (*(volatile uint32_t *)TIMER0_TIM12 - plant_t < {n}u) {{}} }}', ('uncached', 'data_bus'), what='polls'),
