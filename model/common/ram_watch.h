@@ -13,9 +13,15 @@ namespace fovea {
 class RamWatch {
  public:
   virtual ~RamWatch() = default;
-  /// A load at a clock of the core, in the order of the program.
-  /// @param room_waits clocks that the core has waited for room in its write buffers so far
-  virtual void loaded(std::uint32_t offset, unsigned bytes, std::uint64_t clock, std::uint64_t room_waits) = 0;
+  struct Load {
+    std::uint32_t offset = 0;
+    unsigned bytes = 0;
+    std::uint32_t pc = 0;          ///< of the instruction
+    std::uint64_t clock = 0;       ///< of the core
+    std::uint64_t room_waits = 0;  ///< clocks that the core has waited for room in its write buffers so far
+  };
+  /// A load, in the order of the program.
+  virtual void loaded(const Load& load) = 0;
   struct Burst {
     std::uint32_t offset = 0;
     unsigned bytes = 0;

@@ -29,8 +29,8 @@ bool WakeOrder::next(Numbered& out) {
 }
 
 std::size_t WakeOrder::first(bool transfer) const {
-  const auto found =
-      std::find_if(ahead_.begin(), ahead_.end(), [&](const Block& b) { return by_transfer(b.front().record) == transfer; });
+  const auto found = std::find_if(ahead_.begin(), ahead_.end(),
+                                  [&](const Block& b) { return by_transfer(b.front().record) == transfer; });
   return static_cast<std::size_t>(found - ahead_.begin());
 }
 

@@ -95,6 +95,29 @@ TEST(WakeOrderTest, EachGoesAtTheTimeOfItsInterrupt) {
   EXPECT_GT(late.issued[3], 30'000'000u);
 }
 
+/// When no transfer will wake the core any more, a replay that is to be compared with a run goes on for as long as the
+/// run did then, if that is not more than a twentieth of the window.
+TEST(WakeOrderTest, WithTheLastTransferTheWorkEnds) {
+  trace::TraceInfo info = info_with_interrupts();
+  const Picoseconds most = (info.end - info.start) / 20;
+  for (const Picoseconds rest : {most, most + 1}) {
+    info.interrupts[kOfTransfer].at = info.end - rest;
+    info.interrupts[kLaterTimed].at = info.end - 1'000'000;
+    info.core_until = info.interrupts[kLaterTimed].at;
+    Listed l;
+    l.records[0] = {read_at(2'000'000, 0x100)};
+    for (const auto& b : {kTimedBlock, kTransferBlock, kLaterBlock})
+      l.records[0].insert(l.records[0].end(), b.begin(), b.end());
+    l.records[2] = {read_at(100'000'000, 0x8000)};
+    l.records[2].back().master = Master::kVpbe;
+    app::ReplayParams params;
+    app::ReplayPath path("t", info, l, params, false);
+    path.end_with_window();
+    EXPECT_TRUE(path.run_before(kNever));
+    EXPECT_EQ(path.requests(), rest == most ? 7u : 8u);
+  }
+}
+
 /// A record of the moved block refers to one that comes later now: it waits for its interrupt alone.
 TEST(WakeOrderTest, ABlockThatIsBroughtForwardWaitsForNothingOfTheOneItOvertakes) {
   std::vector<Record> refers = kTransferBlock;

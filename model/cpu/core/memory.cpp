@@ -67,7 +67,7 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
 /// as far as nobody else has to act for it, who would act after this instruction if nothing was observed.
 void Core::tell_load(std::uint32_t pa, unsigned bytes) {
   if (ledger_.cycle < interface_.stop_cycle && !interface_.attention) bus_.run_buffers(ledger_.cycle);
-  ram_watch_->loaded(ram_.offset(pa), bytes, ledger_.cycle, bus_.room_waits());
+  ram_watch_->loaded({ram_.offset(pa), bytes, regs_.pc, ledger_.cycle, bus_.room_waits()});
 }
 
 void Core::store_to_ram(std::uint32_t va, std::uint32_t pa, unsigned bytes, std::uint32_t value) {

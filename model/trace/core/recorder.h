@@ -57,8 +57,8 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
               std::function<CoreState(const MemRequest*)> core, Surroundings surroundings = {});
 
   /// Recording covers [start, end): requests put on their port in it. If transfers of the EDMA are under way at
-  /// `start`, of which the trace would have only a part, it begins later: with the core's first register access at which
-  /// there are none, but at most kLongestDelay later. The clock is the core's, `scr` the crossbar's.
+  /// `start`, of which the trace would have only a part, it begins later: with the core's first register access at
+  /// which there are none, but at most kLongestDelay later. The clock is the core's, `scr` the crossbar's.
   void open(Picoseconds start, Frequency core_clock, Picoseconds core_clock_start, const ClockInfo& scr = {});
   static constexpr Picoseconds kLongestDelay = 20 * kPsPerMs;
   void close(Picoseconds end);
@@ -79,7 +79,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
     pulse_ = code_;
     pulsed_at_ = at;
   }
-  void loaded(std::uint32_t offset, unsigned bytes, std::uint64_t clock, std::uint64_t room_waits) override;
+  void loaded(const Load& load) override;
   void moved(const Burst& burst, Picoseconds at) override;
 
   /// After close(). `info` has the parameters and the clocks of crossbar and SDRAM; the rest is
@@ -168,6 +168,8 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
     std::uint32_t place = 0;
     std::uint64_t first = 0, latest = 0;  // clocks of the core, counted as those of the recording
     unsigned count = 0;
+    std::uint32_t pc = 0;                 // of the latest
+    unsigned by_pc = 0;                   // how many of the latest were by that instruction
   };
   /// What a wait ended with.
   struct WaitEnd {
@@ -200,6 +202,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   void release_core(Stream& s, Pending& p, const MemRequest& r);
   void release_in_program(Stream& s, Pending& p, std::uint64_t asked);
   void note_room(Stream& s, Pending& p, const MemRequest& r, const CoreState& now);
+  void note_flag(const Load& load);
   void release_line(Stream& s, Pending& p, Picoseconds at);
   void release_repeating(Stream& s, Pending& p, Picoseconds at);
   void release_by_data(Stream& s, Pending& p, Picoseconds at);
@@ -259,6 +262,8 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   std::deque<TransferTrigger> ended_;     // of the latest codes, those since the core's latest register access
   std::array<Flag, 32> flags_{};
   std::size_t next_flag_ = 0;
+  std::array<std::uint32_t, 16> pollers_{};  // instructions that have looked at a word again and again; 0: none
+  std::size_t next_poller_ = 0;
   Looks ram_looks_, register_looks_;
   std::uint32_t not_followed_ = 0;        // masters, one bit each, some of whose records keep their times
   bool open_ = false, delayed_ = false;  // delayed_: to be opened when no transfer is under way

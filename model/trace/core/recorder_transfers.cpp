@@ -59,7 +59,7 @@ void BusRecorder::submit_aside(const MemRequest& r) {
 bool BusRecorder::looks_in_a_loop(const MemRequest& r) {
   const std::uint64_t now = clock_.running() ? clock_.edge_at_or_after(r.issued) : 0;
   if (r.write || register_looks_.count == 0 || register_looks_.place != r.address)
-    register_looks_ = {r.address, now, now, 0};
+    register_looks_ = {r.address, now, now, 0, 0, 0};
   register_looks_.latest = now;
   // A code from before the first look is seen without a wait.
   if (++register_looks_.count == 1) code_seen_ = true;
@@ -292,20 +292,28 @@ void BusRecorder::note_wait(std::uint64_t began, std::uint64_t seen, std::uint64
   note_step(room_waits, seen - std::min(room_waits, seen));
 }
 
-void BusRecorder::loaded(std::uint32_t offset, unsigned, std::uint64_t clock, std::uint64_t room_waits) {
-  const std::uint32_t word = offset & ~3u;
-  if (ram_looks_.count == 0 || ram_looks_.place != word || clock - ram_looks_.latest > kClocksOfALoop)
-    ram_looks_ = {word, clock, clock, 0};
-  ram_looks_.latest = clock;
+/// The words that the program waits at are those that it has looked at again and again, and all that the same
+/// instruction looks at: the code of a loop that waits may find its first looks at some of its words fulfilled.
+void BusRecorder::note_flag(const Load& load) {
+  const bool polls = std::find(pollers_.begin(), pollers_.end(), load.pc) != pollers_.end();
+  if (!polls && ram_looks_.by_pc < kLooksOfALoop) return;
+  if (!polls) pollers_[next_poller_++ % pollers_.size()] = load.pc;
+  flags_[next_flag_++ % flags_.size()] = {.word = load.offset & ~3u, .by = {}};
+}
+
+void BusRecorder::loaded(const Load& load) {
+  const std::uint32_t word = load.offset & ~3u;
+  if (ram_looks_.count == 0 || ram_looks_.place != word || load.clock - ram_looks_.latest > kClocksOfALoop)
+    ram_looks_ = {word, load.clock, load.clock, 0, 0, 0};
+  ram_looks_.latest = load.clock;
   ++ram_looks_.count;
+  ram_looks_.by_pc = ram_looks_.pc == load.pc ? ram_looks_.by_pc + 1 : 1;
+  ram_looks_.pc = load.pc;
   const auto flag = std::find_if(flags_.begin(), flags_.end(), [&](const Flag& f) { return f.word == word; });
-  if (flag == flags_.end()) {
-    if (ram_looks_.count == kLooksOfALoop) flags_[next_flag_++ % flags_.size()] = {.word = word, .by = {}};
-    return;
-  }
+  if (flag == flags_.end()) return note_flag(load);
   if (!std::exchange(flag->written, false) || !flag->last || !open_) return;
   const std::uint64_t origin = core_(nullptr).origin;
-  note_wait(ram_looks_.first - origin, clock - origin, room_waits - room_waits_at_open_,
+  note_wait(ram_looks_.first - origin, load.clock - origin, load.room_waits - room_waits_at_open_,
             {flag->by, Point::kDelivered, flag->at});
   ram_looks_ = {};
 }
