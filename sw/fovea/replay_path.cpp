@@ -336,8 +336,10 @@ void ReplayPath::prepare(unsigned stream) {
       off_edge = s.align > 1;
     }
     if (off_edge) at = s.clock.edge(aligned(s, s.clock.edge_at_or_after(at)));
-    at = std::max(at, s.earliest);
-    if (r.kind == trace::Kind::kStep) at += r.service;
+    if (r.kind == trace::Kind::kStep)
+      at += r.service;  // the stores of the program before it may have gone out later
+    else
+      at = std::max(at, s.earliest);
     if (at > kLatest) throw UserError(fmt::format("trace '{}': it goes on for hours", name_));
     if (r.on_bus() || earlier != trace::kInterrupt) {
       set_time(stream, at);

@@ -101,6 +101,7 @@ void BusRecorder::submitted(const MemRequest& r, bool to_sdram) {
     return;
   }
   if (r.master == Master::kArmD) register_looks_ = {};
+  if (stream == 0) place_wait_before(r);
   Stream& s = streams_[stream];
   const std::uint64_t number = s.next;
   Pending& p = append(s, r.issued);
@@ -332,6 +333,7 @@ void BusRecorder::end_flight(const MemRequest& r) {
 
 void BusRecorder::mark(std::uint32_t value, Picoseconds at) {
   if (!open_ || at < start_) return;
+  place_waits();
   Stream& s = streams_[0];
   Pending& p = append(s, at);
   p.done = true;
@@ -434,6 +436,7 @@ void BusRecorder::finish(TraceInfo info,
   info.end = end_;
   info.streams.resize(streams_.size());
   info.streams[0] = core_info_;
+  place_waits();
   for (const Stream& s : streams_)
     if (s.pace == Pace::kTransfers) {
       info.streams[static_cast<std::size_t>(&s - streams_.data())] = {scr_.frequency(), scr_start_, 1, 0};

@@ -178,6 +178,14 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
     Picoseconds at = 0;
   };
 
+  /// A wait whose place in the stream is not known yet.
+  struct Wait {
+    std::uint64_t began, seen, room_waits;
+    WaitEnd end;
+    /// Its end, as Step::asked.
+    std::uint64_t asked() const { return seen - std::min(room_waits, seen); }
+  };
+
   Outcome* outcome(Stream& s, std::uint64_t number) {
     if (number == kNone) return nullptr;
     Outcome& o = s.history[number % kHistory];
@@ -189,6 +197,8 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   void note_sleep();
   void note_ends(Picoseconds at);
   void note_wait(std::uint64_t began, std::uint64_t seen, std::uint64_t room_waits, const WaitEnd& end);
+  void place_waits(std::uint64_t asked = kNone);
+  void place_wait_before(const MemRequest& r);
   void release_behind_latest(Stream& s, Pending& p, Picoseconds at, unsigned align);
   std::size_t interrupt_before(std::uint64_t woke) const;
   void submit_aside(const MemRequest& r);
@@ -265,6 +275,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   std::array<std::uint32_t, 16> pollers_{};  // instructions that have looked at a word again and again; 0: none
   std::size_t next_poller_ = 0;
   Looks ram_looks_, register_looks_;
+  std::deque<Wait> waits_;
   std::uint32_t not_followed_ = 0;        // masters, one bit each, some of whose records keep their times
   bool open_ = false, delayed_ = false;  // delayed_: to be opened when no transfer is under way
   Picoseconds start_ = 0, end_ = kNever;

@@ -38,7 +38,9 @@ void BusRecorder::submit_aside(const MemRequest& r) {
     register_access_ = true;
     awaited_ = &r;
     if (looks_in_a_loop(r)) return;
+    place_waits();
   } else {
+    place_wait_before(r);
     posted_.push_back(&r);
   }
   Stream& s = streams_[0];
@@ -219,6 +221,7 @@ void BusRecorder::note_sleep() {
   const std::size_t by = interrupt_before(woke);
   if (by == interrupts_.size()) return;
   core_before_.idle = now.idle;
+  place_waits();
   Stream& s = streams_[0];
   const Outcome* anchor = outcome(s, s.latest);
   if (anchor && !anchor->done) anchor = nullptr;
@@ -266,6 +269,7 @@ void BusRecorder::note_ends(Picoseconds at) {
       interrupts_.push_back({latest, by, by.at, false});
       interrupts_.back().by.at = latest;
     }
+    place_waits();
     Pending& p = append_step(at);
     release_behind_latest(streams_[0], p, at, 1);
     p.record.release = Release::kWhen;
@@ -276,20 +280,34 @@ void BusRecorder::note_ends(Picoseconds at) {
 }
 
 /// The program has waited in a loop from `began` on and has `seen` the end, all in clocks of the core; without a
-/// wait both are one.
+/// wait both are one. Stores from before may still be in the write buffer: the wait comes behind them in the stream.
 void BusRecorder::note_wait(std::uint64_t began, std::uint64_t seen, std::uint64_t room_waits, const WaitEnd& end) {
   if (!open_ || end.by.stream == kInterrupt || clock_.edge(seen) < start_ || end.at < start_) return;
   note_sleep();
+  waits_.push_back({began, seen, room_waits, end});
+}
+
+/// Those waits become records that ended no later than the program came to `asked`.
+void BusRecorder::place_waits(std::uint64_t asked) {
   Stream& s = streams_[0];
-  Pending& p = append_step(clock_.edge(seen));
-  release_in_program(s, p, began - std::min(room_waits, began));
-  p.record.release = Release::kWhen;
-  p.record.source = end.by.stream;
-  p.record.point = end.point;
-  p.event = end.by.number;
-  const std::uint64_t waited_until = std::max(clock_.edge_at_or_after(end.at), began);
-  p.record.wake_gap = static_cast<std::uint32_t>(seen - std::min(waited_until, seen));
-  note_step(room_waits, seen - std::min(room_waits, seen));
+  for (; !waits_.empty() && waits_.front().asked() <= asked; waits_.pop_front()) {
+    const Wait& w = waits_.front();
+    Pending& p = append_step(clock_.edge(w.seen));
+    release_in_program(s, p, w.began - std::min(w.room_waits, w.began));
+    p.record.release = Release::kWhen;
+    p.record.source = w.end.by.stream;
+    p.record.point = w.end.point;
+    p.event = w.end.by.number;
+    const std::uint64_t waited_until = std::max(clock_.edge_at_or_after(w.end.at), w.began);
+    p.record.wake_gap = static_cast<std::uint32_t>(w.seen - std::min(waited_until, w.seen));
+    note_step(w.room_waits, w.asked());
+  }
+}
+
+void BusRecorder::place_wait_before(const MemRequest& r) {
+  if (waits_.empty()) return;
+  const CoreState now = core_(&r);
+  place_waits(now.asked == 0 ? kNone : now.asked + room_waits_at_open_ - now.origin);
 }
 
 /// The words that the program waits at are those that it has looked at again and again, and all that the same
