@@ -72,9 +72,9 @@ expect 2 "$fovea" limits small.yaml --over clocks.ddr=243MHz -o base
 firmware load kernels/remap_plain.c \
   's/^  while \(lut != end\) (.*)$/  while (lut != end) { (void)*(const volatile uint32_t *)(base + *lut + 8192); \1 }/'
 export TMPDIR=$out/tmp
-expect 0 "$fovea" check small.yaml "$firmware" "$firmware" && says '^passed: small against .*fovea_firmware.elf: '
+expect 0 "$fovea" check small.yaml "$firmware" "$firmware" && says '^passed: small by .*fovea_firmware.elf against .*fovea_firmware.elf: '
 expect 1 "$fovea" check small.yaml "$firmware" load.elf --markdown mr.md -s run.frames=1 -o kept &&
-  says 'FAILED  frame.remap_time.mean' && says '^blamed: remap_plain \(remap_plain.c:[0-9]+\) executes more'
+  says '^FAILED: small by load.elf against .*fovea_firmware.elf: ' && says 'FAILED  frame.remap_time.mean' && says '^blamed: remap_plain \(remap_plain.c:[0-9]+\) executes more'
 [ "$(grep -c '^- \*\*' mr.md)" = 5 ] && grep -q '^- \*\*who\*\*: `remap_plain (remap_plain.c:' mr.md || fail "$(cat mr.md)"
 [ -f kept/a/stats.json ] && [ -f kept/b/profile.csv ] || fail 'the results are not kept'
 grep -q '"run.frames": {"value": "1"' kept/b/config.json || fail '-s has no effect'

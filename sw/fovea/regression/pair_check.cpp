@@ -140,6 +140,8 @@ PairRuns::PairRuns(const PairRequest& request, const app::CliContext& context) :
         new_baseline({.run = &before, .tolerance = tolerance, .reference = "reference", .why = "the program before"}));
     baseline_.file = request.before;
     baseline_.text.clear();
+    after_.subject.name += " by " + app::one_line(request.after);
+    baseline_.subject = after_.subject;
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(temporary_, ignored);
