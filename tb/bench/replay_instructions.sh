@@ -8,8 +8,8 @@ set -eu
 load=${1:?usage: replay_instructions.sh BUILD [all|gate]}/tb/bench/bench_replay_load
 set=${2:-all}
 printf '%-10s %7s %6s %9s %12s %12s\n' load masters window rows/req first next
-line() {  # KIND MASTERS WINDOW: runs of 10 000, 40 000 and 130 000 requests
-  for n in 10000 40000 130000; do
+line() {  # KIND MASTERS WINDOW: runs of 8 000, 24 000 and 64 000 requests
+  for n in 8000 24000 64000; do
     valgrind --tool=callgrind --callgrind-out-file=/dev/null "$load" "$1" "$2" "$n" "$3" 2>&1
   done | awk -v kind="$1" -v masters="$2" -v window="$3" '
     / requests in / { n[++runs] = $1; rows[runs] = $6 }

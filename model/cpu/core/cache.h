@@ -38,6 +38,8 @@ class Cache {
       }
     return -1;
   }
+  /// Forgets which lines were found last.
+  void forget() { hints_ = {}; }
   Line& line(unsigned i) { return lines_[i]; }
   const Line& line(unsigned i) const { return lines_[i]; }
   std::uint8_t* data(unsigned i) { return data_.data() + std::size_t{i} * kLineBytes; }

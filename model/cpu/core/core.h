@@ -226,6 +226,10 @@ class Core : public Background {
   /// observer calls this once when it begins to need that, and once when it no longer does.
   void watch_line(unsigned line, bool on) { data_.watch_line(line, on); }
 
+  /// Forgets all that is remembered to save host time: translations, hints, decoded lines, times, and up to when
+  /// nobody else acts. It changes no result, which tests show by doing so at any time.
+  void forget_for_a_test();
+
   // For debuggers: only at an instruction boundary or during an SWI, without simulated time.
   CoreView view() const {
     return {regs_, system_, mmu_, ram_, data_, fetch_, bus_, scoreboard_, irq_, fiq_};

@@ -89,6 +89,12 @@ class DataBus {
   std::uint32_t write_address() const { return write_access_.address; }
   /// Changes pending bytes, so that older data do not overwrite new ones later.
   void patch(std::uint32_t pa, std::span<const std::uint8_t> bytes);
+  /// Forgets the times that are remembered because they are asked for again and again.
+  void forget() {
+    act_time_cycle_ = kNoCycle;
+    write_over_ = 0;
+    whole_of_ = kNever;
+  }
   /// Clocks that the core waited for room in the buffers, and how often it waited until both were
   /// empty.
   std::uint64_t room_waits() const { return room_waits_; }

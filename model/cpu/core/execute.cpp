@@ -275,6 +275,14 @@ Core::Boundary Core::wait_for_others(Picoseconds t) {
   return Boundary::kExecute;
 }
 
+void Core::forget_for_a_test() {
+  forget_translations();
+  fetch_.forget_lines();
+  data_.lines().forget();
+  bus_.forget();
+  interface_.stop_cycle = 0;
+}
+
 /// True if the chain that was left for one instruction can continue with `next`.
 bool Core::chain_goes_on(const Instruction* next) const {
   const std::uint64_t cycle = ledger_.cycle;

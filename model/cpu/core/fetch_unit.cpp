@@ -129,10 +129,21 @@ void FetchUnit::fill_line(std::uint32_t mva, std::uint32_t pa) {
 int FetchUnit::find_line(std::uint32_t mva, std::uint32_t pa) {
   if (ledger_.cycle < fill.last && fill.line != (mva & ~31u))
     ledger_.stall_to(fill.last, Cause::kIcache, fill.pa, kService);
-  const int index = icache_.find(mva);
-  if (index >= 0) return index;
+  if (const int index = icache_.find(mva); index >= 0) {
+    if (ledger_.cycle < fill.last)  // of this line
+      ledger_.stall_to(fill.word(mva), Cause::kIcache, fill.pa, kService);
+    return index;
+  }
   fill_line(mva, pa);
   return icache_.find(mva);
+}
+
+void FetchUnit::forget_lines() {
+  for (auto* lines : {&decoded_, &ram_decoded_})
+    for (DecodedLine& d : *lines) d.valid = 0;
+  jumps.fill(&no_line_);
+  icache_.forget();
+  leave_line();
 }
 
 bool FetchUnit::read_ahead(std::uint32_t pa) {

@@ -61,7 +61,7 @@ class FetchUnit {
     const bool known = current->valid && current->records[at].body;
     return known ? &current->records[at] : nullptr;
   }
-  /// Finds a line in the I-cache, or fills it. @return its index; -1 after a bus error
+  /// Finds a line in the I-cache, or fills it, and waits for its word of a fill. @return its index; -1 after a bus error
   int find_line(std::uint32_t mva, std::uint32_t pa);
   void fill_line(std::uint32_t mva, std::uint32_t pa);
   /// Reads the four words around `pa` past the cache, unless the last read has them and the program
@@ -77,6 +77,8 @@ class FetchUnit {
 
   /// Forgets under which addresses lines were found.
   void forget();
+  /// Forgets all decoded lines.
+  void forget_lines();
   void leave_line() { line_va = kNoLine; }
   /// A chain of records has gone to another line, which is `current`, unless the line was left for
   /// another reason since the chain began.
