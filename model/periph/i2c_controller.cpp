@@ -1,5 +1,7 @@
 #include "model/periph/i2c_controller.h"
 
+#include <utility>
+
 namespace fovea::periph {
 
 namespace {
@@ -48,12 +50,17 @@ I2cController::I2cController(sc_core::sc_module_name name)
     refresh();
   });
   regs.icmdr.on_write([this](std::uint32_t) { mode_written(); });
+  regs.icpsc.on_write([this](std::uint32_t) {
+    if (running_ && (regs.icpsc.get() & 0xFF) != prescaler_)
+      Diagnostics::instance().guest("I2C.ICPSC is written while ICMDR.IRS is 1: the prescaler is taken when IRS goes "
+                                    "from 0 to 1");
+  });
   SC_METHOD(update);
   sensitive << wake_.event();
 }
 
 std::uint64_t I2cController::bit_ticks() const {
-  const std::uint64_t psc = regs.icpsc.get() & 0xFF;
+  const std::uint64_t psc = prescaler_;
   const std::uint64_t d = psc == 0 ? 7 : psc == 1 ? 6 : 5;
   return (psc + 1) * ((regs.icclkl.get() & 0xFFFF) + (regs.icclkh.get() & 0xFFFF) + 2 * d);
 }
@@ -81,6 +88,8 @@ void I2cController::abandon_transfer() {
 
 void I2cController::on_reset(ResetKind) {
   abandon_transfer();
+  running_ = false;
+  prescaler_ = 0;
   remaining_ = 0;
   shift_ = received_ = 0;
   refresh();
@@ -89,10 +98,12 @@ void I2cController::on_reset(ResetKind) {
 void I2cController::mode_written() {
   auto& m = regs.icmdr;
   if (!m.irs) {
+    running_ = false;
     abandon_transfer();
     refresh();
     return;
   }
+  if (!std::exchange(running_, true)) prescaler_ = regs.icpsc.get() & 0xFF;
   if (m.xa || m.fdf || m.stb || m.dlb || m.bc)
     Diagnostics::instance().not_modelled("I2C mode bits XA, FDF, STB, DLB or BC");
   const bool free = state_ == State::kIdle || state_ == State::kHeld;

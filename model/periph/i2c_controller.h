@@ -47,7 +47,8 @@ struct I2cRegs : RegBank {
 };
 
 /// I2C in master mode, with bit timing: a bit takes (ICPSC + 1) x (ICCLKL + ICCLKH + 2d) clock
-/// periods with d = 7, 6 or 5 for ICPSC = 0, 1 or more. START and STOP take one bit each (assumed),
+/// periods with d = 7, 6 or 5 for ICPSC = 0, 1 or more; ICPSC is taken when IRS goes from 0 to 1 (family: SPRUJ17H,
+/// of the AM263x). START and STOP take one bit each (assumed),
 /// a byte with its acknowledge nine. Targets are called when a byte is complete. The controller
 /// stretches the clock while ICDXR is empty or ICDRR was not read.
 ///
@@ -99,6 +100,8 @@ class I2cController : public WithRegs<I2cRegs>, public ClockedTarget {
 
   State state_ = State::kIdle;
   std::uint32_t status_;
+  bool running_ = false;           // ICMDR.IRS
+  std::uint32_t prescaler_ = 0;    // ICPSC when IRS went to 1
   std::uint32_t remaining_ = 0;
   std::uint8_t shift_ = 0, received_ = 0;
   I2cTargetIf* target_ = nullptr;

@@ -1,6 +1,7 @@
 #include "model/periph/timer64.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace fovea::periph {
 
@@ -21,15 +22,15 @@ Timer64::Timer64(sc_core::sc_module_name name) : ClockedTarget(name, regs) {
     regs.tim34.set(shadow_valid_ ? shadow34_ : static_cast<std::uint32_t>(count(1)));
     shadow_valid_ = false;
   });
-  regs.tim12.on_write([this](std::uint32_t) { set_count(0, regs.tim12.get()); });
-  regs.tim34.on_write([this](std::uint32_t) { set_count(1, regs.tim34.get()); });
-  regs.prd12.on_write([this](std::uint32_t) { load_periods(); });
-  regs.prd34.on_write([this](std::uint32_t) { load_periods(); });
-  regs.tcr.on_write([this](std::uint32_t) {
+  lockable(regs.tim12, [this] { set_count(0, regs.tim12.get()); });
+  lockable(regs.tim34, [this] { set_count(1, regs.tim34.get()); });
+  lockable(regs.prd12, [this] { load_periods(); });
+  lockable(regs.prd34, [this] { load_periods(); });
+  lockable(regs.tcr, [this] {
     if (regs.tcr.clksrc12) Diagnostics::instance().not_modelled("TIMER64 clock from the pin");
     reconfigure();
   });
-  regs.tgcr.on_write([this](std::uint32_t) { reconfigure(); });
+  lockable(regs.tgcr, [this] { reconfigure(); });
   regs.wdtcr.on_write([this](std::uint32_t word) { watchdog_key(word); });
   auto pin = [this](std::uint32_t) {
     pin_reset_ = (regs.gpint_gpen.get() & 0x20000) && (regs.gpdat_gpdir.get() & 0x20002) == 0x20002;
@@ -40,6 +41,18 @@ Timer64::Timer64(sc_core::sc_module_name name) : ClockedTarget(name, regs) {
   regs.gpdat_gpdir.on_write(pin);
   SC_METHOD(update);
   sensitive << wake_.event();
+}
+
+void Timer64::lockable(Reg& reg, std::function<void()> written) {
+  lockable_.push_back({&reg, 0});
+  reg.on_write([this, n = lockable_.size() - 1, written = std::move(written)](std::uint32_t) {
+    Lockable& l = lockable_[n];
+    if (!locked()) return written();
+    l.reg->set(l.value);
+    Diagnostics::instance().guest("TIMER64." + l.reg->name() +
+                                  " is written while the watchdog is armed, and keeps its value; allowed: the keys in "
+                                  "WDTCR");
+  });
 }
 
 std::uint64_t Timer64::count(unsigned half) const {
@@ -153,6 +166,7 @@ void Timer64::watchdog_key(std::uint32_t word) {
   switch (watchdog_) {
     case Watchdog::kIdle:
       if (key == kKey1) watchdog_ = Watchdog::kPreActive;
+      for (Lockable& l : lockable_) l.value = l.reg->get();
       break;
     case Watchdog::kPreActive:
       watchdog_ = key == kKey2 && regs.wdtcr.wden ? Watchdog::kActive
@@ -160,9 +174,11 @@ void Timer64::watchdog_key(std::uint32_t word) {
                                                   : Watchdog::kIdle;
       break;
     case Watchdog::kActive:
-      watchdog_ = key == kKey1 ? Watchdog::kServing : Watchdog::kExpired;
+      regs.wdtcr.wden.set(1);
+      watchdog_ = key == kKey1 ? Watchdog::kServing : key == kKey2 ? Watchdog::kActive : Watchdog::kExpired;
       break;
     case Watchdog::kServing:
+      regs.wdtcr.wden.set(1);
       if (key == kKey2) {
         watchdog_ = Watchdog::kActive;
         half_[0].counter.set_value(0, ticks());

@@ -1,7 +1,9 @@
 // 64-bit timer: used as one 64-bit timer, two 32-bit timers, chained timers, or watchdog.
 #pragma once
 #include <array>
+#include <functional>
 #include <systemc>
+#include <vector>
 
 #include "model/periph/clocked_target.h"
 #include "model/periph/core/timer_counter.h"
@@ -60,8 +62,10 @@ struct TimerRegs : RegBank {
 /// Interrupts do not depend on INTCTL_STAT: Linux gets them without writing it. A counter in reset
 /// (TIMxxRS = 0) keeps its value (assumed).
 ///
-/// Watchdog: the keys 0xA5C6, 0xDA7E (with WDEN) activate it and later serve it. A wrong key or a
-/// match makes it expire, and it stays expired.
+/// Watchdog: the keys 0xA5C6, 0xDA7E (with WDEN) activate it and later serve it. A word that is neither, or a match,
+/// makes it expire, and it stays expired. From the first key on TIM12, TIM34, PRD12, PRD34, TCR and TGCR cannot be
+/// written, from the second one on WDEN neither: an active watchdog ends by a reset only (SPRUH82C 30.1.6; which
+/// registers: Linux drivers/watchdog/davinci_wdt.c).
 ///
 /// Not modelled: the pin as clock or gate, compare registers, capture of external events.
 class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
@@ -88,7 +92,15 @@ class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
     bool level = false;
   };
 
+  /// A register that cannot be written while the watchdog is armed, and its value then.
+  struct Lockable {
+    Reg* reg;
+    std::uint32_t value;
+  };
+
   bool wide() const { return mode_ == k64 || mode_ == kWatchdog; }
+  bool locked() const { return mode_ == kWatchdog && watchdog_ != Watchdog::kIdle; }
+  void lockable(Reg& reg, std::function<void()> written);
   std::uint64_t count(unsigned half) const;
   void set_count(unsigned half, std::uint32_t value);
   void load_periods();
@@ -102,6 +114,7 @@ class Timer64 : public WithRegs<TimerRegs>, public ClockedTarget {
   void on_reset(ResetKind) override;
   void update();
 
+  std::vector<Lockable> lockable_;
   std::array<Half, 2> half_;  // TIM12 and TIM34; in the 64-bit modes half_[0] is both
   std::uint32_t mode_ = k64;
   Watchdog watchdog_ = Watchdog::kIdle;

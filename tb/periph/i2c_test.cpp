@@ -207,6 +207,23 @@ TEST_F(I2cTest, DividersSetTheBitTime) {
   }
 }
 
+// SPRUJ17H (AM263x), I2C_ICPSC: the prescaler is taken when IRS goes from 0 to 1.
+TEST_F(I2cTest, ThePrescalerIsTakenWithTheEndOfReset) {
+  bus.write(kPsc, 9);
+  EXPECT_EQ(bus.read(kPsc), 9u);
+  std::uint64_t k = next_edge();
+  write_bytes({0x12, 0x34}, kStp);
+  run_until(edge(k + kBit * 29));
+  EXPECT_EQ(s.decoder.last, edge(k + kBit * 29));
+  bus.write(kMdr, 0);
+  bus.write(kMdr, kIrs);
+  k = next_edge();
+  write_bytes({0x12, 0x34}, kStp);
+  const std::uint64_t bit = 10 * (50 + 54 + 10);
+  run_until(edge(k + bit * 29));
+  EXPECT_EQ(s.decoder.last, edge(k + bit * 29));
+}
+
 TEST_F(I2cTest, ReadWithRepeatedStart) {
   s.decoder.regs[0x80] = 0x51;
   s.decoder.regs[0x81] = 0x46;

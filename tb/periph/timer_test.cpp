@@ -1,4 +1,8 @@
 // Timer64 with the AINTC: times of counts, matches and interrupts.
+#include <random>
+#include <set>
+#include <string>
+
 #include "model/periph/aintc.h"
 #include "model/periph/timer64.h"
 #include "tb/periph/bench.h"
@@ -21,9 +25,10 @@ struct System {
   Timer64 timer{"timer"};
   AintcParams params;
   Aintc aintc{"aintc", params};
-  Timer64 watchdog{"watchdog"}, pin_timer{"pin_timer"};
-  sc_core::sc_signal<bool> bitten{"bitten"}, pin_reset{"pin_reset"};
-  test::Bus bus{"bus"}, aintc_bus{"aintc_bus"}, wdt_bus{"wdt_bus"}, pin_bus{"pin_bus"};
+  // An expired watchdog stays so, and an armed one is no timer any more: each test of one has its own.
+  Timer64 watchdog{"watchdog"}, pin_timer{"pin_timer"}, lock_timer{"lock_timer"}, served_timer{"served_timer"};
+  sc_core::sc_signal<bool> bitten{"bitten"}, pin_reset{"pin_reset"}, lock_expired{"lock_expired"}, served_expired{"served_expired"};
+  test::Bus bus{"bus"}, aintc_bus{"aintc_bus"}, wdt_bus{"wdt_bus"}, pin_bus{"pin_bus"}, lock_bus{"lock_bus"}, served_bus{"served_bus"};
   test::Probe probe12{"probe12"}, probe34{"probe34"}, probe_irq{"probe_irq"};
   System() {
     timer.clk(clk);
@@ -43,6 +48,12 @@ struct System {
     watchdog.clk(clk);
     watchdog.expired(bitten);
     wdt_bus.socket.bind(watchdog.reg_socket);
+    served_timer.clk(clk);
+    served_timer.expired(served_expired);
+    served_bus.socket.bind(served_timer.reg_socket);
+    lock_timer.clk(clk);
+    lock_timer.expired(lock_expired);
+    lock_bus.socket.bind(lock_timer.reg_socket);
     pin_timer.clk(clk);
     pin_timer.expired(pin_reset);
     pin_bus.socket.bind(pin_timer.reg_socket);
@@ -471,7 +482,7 @@ TEST_F(TimerTest, WrongKeyExpiresAnActiveWatchdogAtOnce) {
   s.wdt_bus.write(kWdtcr, 0xA5C6'4000);
   s.wdt_bus.write(kWdtcr, 0xDA7E'4000);
   EXPECT_FALSE(s.bitten.read());
-  s.wdt_bus.write(kWdtcr, 0xDA7E'4000);
+  s.wdt_bus.write(kWdtcr, 0x1234'4000);
   EXPECT_TRUE(s.bitten.read());
   EXPECT_STREQ(s.watchdog.reset_cause(),
                "a wrong key was written to the active watchdog, as Linux does to restart");
@@ -486,29 +497,79 @@ TEST_F(TimerTest, TimerPinAsBootLoadersUseItResetsTheBoard) {
                "the watchdog timer's pin was driven high, as boot loaders do");
 }
 
-// Last: an expired watchdog stays so.
-TEST_F(TimerTest, ZWatchdogIsServedAndThenExpiresAtItsPeriod) {
+/// What an armed watchdog locks: SPRUH82C 30.1.6 and Linux drivers/watchdog/davinci_wdt.c ("write protected ... except
+/// for the WDKEY field"). All other registers of the block can be written.
+const std::set<std::string> kLockedByTheWatchdog = {"TIM12", "TIM34", "PRD12", "PRD34", "TCR", "TGCR"};
+
+// In each state of an armed one every register is written, in every byte lane.
+TEST_F(TimerTest, AnArmedWatchdogEndsByAResetOnly) {
+  test::Bus& wdt = s.lock_bus;
+  std::mt19937 rng(1);
+  enum { kPreActive, kActive, kServing };
+  wdt.write(kTgcr, 0xB);
+  wdt.write(kPrd12, 100'000);
+  wdt.write(kTcr, 2u << 6);
+  wdt.write(kWdtcr, 0xA5C6'4000);
+  Picoseconds served = 0;
+  for (const int state : {kPreActive, kActive, kServing}) {
+    if (state == kActive) {
+      wdt.write(kWdtcr, 0xDA7E'4000);
+      served = now();
+    }
+    if (state == kServing) wdt.write(kWdtcr, 0xA5C6'4000);
+    for (const Reg* reg : s.lock_timer.regs.regs()) {
+      if (reg->name() == "WDTCR" || reg->name().starts_with("GP")) continue;  // the keys; the pin's reset
+      const bool locked = kLockedByTheWatchdog.count(reg->name()) > 0;
+      std::uint32_t writable = 0;
+      for (const Field* f : reg->fields())
+        if (f->mode() == Mode::kRw) writable |= f->mask();
+      for (const unsigned bytes : {4u, 2u, 1u})
+        for (std::uint32_t at = reg->offset(); at < reg->offset() + 4; at += bytes) {
+          const std::uint32_t before = wdt.read(reg->offset()), word = static_cast<std::uint32_t>(rng());
+          wdt.write(at, word, bytes);
+          const unsigned shift = 8 * (at & 3u);
+          const std::uint32_t lanes = (bytes == 4 ? ~0u : (1u << 8 * bytes) - 1u) << shift, mask = writable & lanes;
+          const std::uint32_t now_is = wdt.read(reg->offset());
+          if (locked)
+            EXPECT_EQ(now_is, before) << reg->name() << " state " << state << " bytes " << bytes << " at " << at;
+          else
+            EXPECT_EQ(now_is & mask, word << shift & mask) << reg->name() << " state " << state;
+        }
+    }
+    wdt.write(kWdtcr, state == kPreActive ? 0xA5C6'4000 : 0xDA7E'0000, 4);  // neither of the words is wrong
+    if (state == kServing) served = now();
+    EXPECT_EQ(wdt.read(kWdtcr) & 0x4000, 0x4000u) << "WDEN";
+    EXPECT_FALSE(s.lock_expired.read());
+  }
+  run_until(served + 4'166'000'000);  // 100,000 clocks of 24 MHz take 4,166.67 us
+  EXPECT_FALSE(s.lock_expired.read());
+  run_until(served + 4'167'000'000);
+  EXPECT_TRUE(s.lock_expired.read());
+}
+
+TEST_F(TimerTest, AWatchdogIsServedAndThenExpiresAtItsPeriod) {
+  test::Bus& bus = s.served_bus;
   bus.write(kPrd12, 1000);
   bus.write(kTgcr, 0xB);  // watchdog mode
   bus.write(kTcr, 2u << 6);
   run_until(now() + 100'000'000);
-  EXPECT_FALSE(s.expired.read());  // not active yet: it does not count
+  EXPECT_FALSE(s.served_expired.read());  // not active yet: it does not count
   bus.write(kWdtcr, 0xA5C6'4000);
   bus.write(kWdtcr, 0xDA7E'4000);
   for (int n = 0; n < 5; ++n) {
     run_until(now() + 30'000'000);  // 720 clocks
-    EXPECT_FALSE(s.expired.read());
+    EXPECT_FALSE(s.served_expired.read());
     bus.write(kWdtcr, 0xA5C6'4000);
     bus.write(kWdtcr, 0xDA7E'4000);
   }
   EXPECT_EQ(bus.read(kTim12), 0u);
   const std::uint64_t base = now();
   run_until(base + 41'600'000);  // 998 clocks
-  EXPECT_FALSE(s.expired.read());
+  EXPECT_FALSE(s.served_expired.read());
   run_until(base + 41'750'000);
-  EXPECT_TRUE(s.expired.read());
+  EXPECT_TRUE(s.served_expired.read());
   EXPECT_EQ(bus.read(kWdtcr) & 0x8000, 0x8000u);
-  EXPECT_STREQ(s.timer.reset_cause(), "the watchdog expired");
+  EXPECT_STREQ(s.served_timer.reset_cause(), "the watchdog expired");
 }
 
 }  // namespace
