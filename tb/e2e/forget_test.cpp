@@ -135,8 +135,9 @@ void expect_nothing_changes(const std::string& experiment, const Keys& keys, con
   EXPECT_GT(remembered.size(), 80u) << remembered;
   for (const std::uint64_t seed : seeds)
     for (const bool strict : {false, true}) {
-      EXPECT_EQ(says(When::kAtBoundaries, strict, seed), remembered) << "boundaries, seed " << seed << ", strict " << strict;
-      EXPECT_EQ(says(When::kAtTimes, strict, seed), remembered) << "times, seed " << seed << ", strict " << strict;
+      SCOPED_TRACE("seed " + std::to_string(seed) + (strict ? ", strict" : ""));
+      EXPECT_EQ(says(When::kAtBoundaries, strict, seed), remembered) << "at boundaries";
+      EXPECT_EQ(says(When::kAtTimes, strict, seed), remembered) << "at times";
     }
 }
 
@@ -145,7 +146,10 @@ constexpr std::uint64_t kSeed = 20261130;
 // A small I-cache is filled again and again while bursts of the EDMA drop lines.
 TEST(ForgetTest, ASmallInstructionCacheIsFilledInTheSameTime) {
   expect_nothing_changes("default.yaml",
-                         {{"cpu.icache.size", "4KiB"}, {"run.frames", "1"}, {"video.width", "188"}, {"video.height", "48"}},
+                         {{"cpu.icache.size", "4KiB"},
+                          {"run.frames", "1"},
+                          {"video.width", "188"},
+                          {"video.height", "48"}},
                          {kSeed});
 }
 
@@ -154,7 +158,8 @@ TEST_P(NightlyForgetTest, NoExperimentChanges) {
   expect_nothing_changes(GetParam(), {{"run.frames", "1"}}, {kSeed, kSeed + 1});
 }
 INSTANTIATE_TEST_SUITE_P(Experiments, NightlyForgetTest,
-                         testing::Values("default.yaml", "evm.yaml", "lines.yaml", "paper-pal.yaml", "paper-vga.yaml", "throughput.yaml"));
+                         testing::Values("default.yaml", "evm.yaml", "lines.yaml", "paper-pal.yaml", "paper-vga.yaml",
+                                         "throughput.yaml"));
 
 }  // namespace
 }  // namespace fovea::e2e

@@ -27,8 +27,10 @@ struct System {
   Aintc aintc{"aintc", params};
   // An expired watchdog stays so, and an armed one is no timer any more: each test of one has its own.
   Timer64 watchdog{"watchdog"}, pin_timer{"pin_timer"}, lock_timer{"lock_timer"}, served_timer{"served_timer"};
-  sc_core::sc_signal<bool> bitten{"bitten"}, pin_reset{"pin_reset"}, lock_expired{"lock_expired"}, served_expired{"served_expired"};
-  test::Bus bus{"bus"}, aintc_bus{"aintc_bus"}, wdt_bus{"wdt_bus"}, pin_bus{"pin_bus"}, lock_bus{"lock_bus"}, served_bus{"served_bus"};
+  sc_core::sc_signal<bool> bitten{"bitten"}, pin_reset{"pin_reset"}, lock_expired{"lock_expired"},
+      served_expired{"served_expired"};
+  test::Bus bus{"bus"}, aintc_bus{"aintc_bus"}, wdt_bus{"wdt_bus"}, pin_bus{"pin_bus"}, lock_bus{"lock_bus"},
+      served_bus{"served_bus"};
   test::Probe probe12{"probe12"}, probe34{"probe34"}, probe_irq{"probe_irq"};
   System() {
     timer.clk(clk);

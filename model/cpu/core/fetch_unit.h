@@ -61,7 +61,7 @@ class FetchUnit {
     const bool known = current->valid && current->records[at].body;
     return known ? &current->records[at] : nullptr;
   }
-  /// Finds a line in the I-cache, or fills it, and waits for its word of a fill. @return its index; -1 after a bus error
+  /// Finds a line in the I-cache, or fills it, and waits for its word of a fill. @return index; -1 after a bus error
   int find_line(std::uint32_t mva, std::uint32_t pa);
   void fill_line(std::uint32_t mva, std::uint32_t pa);
   /// Reads the four words around `pa` past the cache, unless the last read has them and the program
