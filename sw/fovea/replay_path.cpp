@@ -345,7 +345,7 @@ void ReplayPath::prepare(unsigned stream) {
       set_time(stream, at);
       return;
     }
-  if (r.kind == trace::Kind::kMark) marks_.push_back({r.address, at});
+    if (r.kind == trace::Kind::kMark) marks_.push_back({r.address, at});
     if (stream == 0) core_last_ = std::max(core_last_, at);
     if (on_issue) on_issue(stream, at);
     note_outcome(s, at, at);

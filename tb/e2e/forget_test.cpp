@@ -1,10 +1,7 @@
 // What the simulator remembers to save host time changes no result: it is forgotten at random instants, and every
 // request has the same times, every picture the same bytes.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <functional>
 #include <memory>
 #include <random>
 #include <sstream>
@@ -14,6 +11,7 @@
 
 #include "model/common/observers.h"
 #include "model/common/sc_ports.h"
+#include "tb/e2e/in_child.h"
 #include "tb/e2e/rig.h"
 
 namespace fovea::e2e {
@@ -106,30 +104,9 @@ std::string board_says(const std::string& experiment, const Keys& keys, When whe
   return out.str();
 }
 
-/// In a process of its own: a simulation elaborates once.
-std::string in_a_process(const std::function<std::string()>& work) {
-  int ends[2];
-  EXPECT_EQ(::pipe(ends), 0);
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const std::string text = work();
-    const bool ok = ::write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
-    ::_exit(ok ? 0 : 1);
-  }
-  ::close(ends[1]);
-  std::string text;
-  char chunk[4096];
-  for (ssize_t n; (n = ::read(ends[0], chunk, sizeof chunk)) > 0;) text.append(chunk, static_cast<std::size_t>(n));
-  ::close(ends[0]);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  EXPECT_EQ(status, 0);
-  return text;
-}
-
 void expect_nothing_changes(const std::string& experiment, const Keys& keys, const std::vector<std::uint64_t>& seeds) {
   const auto says = [&](When when, bool strict, std::uint64_t seed) {
-    return in_a_process([&] { return board_says(experiment, keys, when, strict, seed); });
+    return test::in_child([&] { return board_says(experiment, keys, when, strict, seed); });
   };
   const std::string remembered = says(When::kNever, false, 0);
   EXPECT_GT(remembered.size(), 80u) << remembered;

@@ -1,8 +1,6 @@
 // The parameter page and the switches on the board: what reaches the chip's registers, and what the
 // firmware refuses. Each case is a process of its own, as a simulation elaborates once.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <functional>
@@ -11,32 +9,13 @@
 #include "sw/fovea/clock_setting.h"
 #include "sw/fovea/parameter_page.h"
 #include "sw/lens/lens.h"
+#include "tb/e2e/in_child.h"
 #include "tb/e2e/rig.h"
 
 namespace fovea::e2e {
 namespace {
 
-/// Text that `what` returns in a child process.
-std::string in_child(const std::function<std::string()>& what) {
-  int ends[2];
-  EXPECT_EQ(::pipe(ends), 0);
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const std::string text = what();
-    const bool ok = ::write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
-    ::_exit(ok ? 0 : 1);
-  }
-  ::close(ends[1]);
-  std::string text;
-  char chunk[4096];
-  for (ssize_t n; (n = ::read(ends[0], chunk, sizeof chunk)) > 0;)
-    text.append(chunk, static_cast<std::size_t>(n));
-  ::close(ends[0]);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  EXPECT_EQ(status, 0);
-  return text;
-}
+using test::in_child;
 
 Rig& small_page(Rig& rig) {
   return rig.set("video.width", "64").set("video.height", "16").set("camera.stamp", "false");

@@ -38,6 +38,14 @@ class TransferFeed : public Feed {
     recorder().completion_pulsed(clock * kClock);
     recorder().interrupt(clock * kClock);
   }
+  /// After a read, the first of so many transfers wakes the core, which begins to serve its interrupt.
+  void first_of(unsigned transfers) {
+    read(100, 100, 120, 130);
+    for (unsigned n = 0; n < transfers; ++n) transfer(n, 200 + 10 * n);
+    interrupt_of(0, 300);
+    sleep(150, 302);
+    reg(false, 310, 316);
+  }
   /// The core slept for so many clocks more, until `clock`.
   void sleep(std::uint64_t clocks, std::uint64_t clock) {
     core.idle += clocks;
@@ -56,12 +64,7 @@ void expect_wait(const Record& r, std::uint64_t event, std::uint64_t gap, const 
 // Handlers whose code and data are in the caches make no request to the SDRAM: each sleep is there all the same.
 TEST(RecorderTransferTest, EachSleepIsAStep) {
   TransferFeed f;
-  f.read(100, 100, 120, 130);
-  f.transfer(0, 200);
-  f.transfer(1, 210);
-  f.interrupt_of(0, 300);
-  f.sleep(150, 302);
-  f.reg(false, 310, 316);
+  f.first_of(2);
   f.interrupt_of(1, 500);
   f.sleep(140, 503);
   f.reg(true, 510, 516);
@@ -79,13 +82,7 @@ TEST(RecorderTransferTest, EachSleepIsAStep) {
 // A transfer that ends while the core serves another interrupt would be slept for if it ended later.
 TEST(RecorderTransferTest, WhatEndsWhileAnInterruptIsServedIsWaitedFor) {
   TransferFeed f;
-  f.read(100, 100, 120, 130);
-  f.transfer(0, 200);
-  f.transfer(1, 210);
-  f.transfer(2, 220);
-  f.interrupt_of(0, 300);
-  f.sleep(150, 302);
-  f.reg(false, 310, 316);
+  f.first_of(3);
   f.interrupt_of(1, 320);
   f.end_of(2, 322);  // while the first one's interrupt is pending, the line does not rise again
   f.reg(true, 330, 336);
@@ -109,12 +106,7 @@ TEST(RecorderTransferTest, WhatEndsWhileAnInterruptIsServedIsWaitedFor) {
 TEST(RecorderTransferTest, ACoreAtWorkWaitsForNothingThatEnds) {
   for (const std::uint64_t awake : {4096u, 4097u}) {
     TransferFeed f;
-    f.read(100, 100, 120, 130);
-    f.transfer(0, 200);
-    f.transfer(1, 210);
-    f.interrupt_of(0, 300);
-    f.sleep(150, 302);
-    f.reg(false, 310, 316);
+    f.first_of(2);
     f.end_of(1, 1'000);
     f.reg(true, 302 + awake, 302 + awake + 8);
     EXPECT_EQ(f.records().size(), awake == 4096 ? 5u : 4u) << awake;

@@ -1,7 +1,6 @@
 // A recorded run against its replay, and a replay with other memory against a real run with that
 // memory.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +16,7 @@
 #include "model/trace/core/trace_file.h"
 #include "sw/fovea/bus_trace_run.h"
 #include "sw/fovea/replay_path.h"
+#include "tb/e2e/in_child.h"
 #include "tb/e2e/rig.h"
 
 namespace fovea::replay {
@@ -118,10 +118,7 @@ void add_ends_to(Figures& f, const std::vector<Picoseconds>& ends, Picoseconds s
 /// A run of the whole board, in a process of its own: a simulation elaborates once.
 Figures run_board(const Keys& keys_set, const Watched& watched, const Change& change,
                   const std::string& trace) {
-  int ends[2];
-  EXPECT_EQ(::pipe(ends), 0);
-  const pid_t child = ::fork();
-  if (child == 0) {
+  const std::string text = test::in_child([&] {
     e2e::Rig rig;
     rig.set("run.frames", std::to_string(kFrames)).set("camera.stamp", "false");
     for (const auto& [key, value] : keys_set) rig.set(key, value);
@@ -174,20 +171,8 @@ Figures run_board(const Keys& keys_set, const Watched& watched, const Change& ch
     std::ostringstream out;
     out.precision(17);
     for (const auto& [name, value] : f) out << name << ' ' << value << '\n';
-    const std::string text = out.str();
-    const bool ok = ::write(ends[1], text.data(), text.size()) ==
-                    static_cast<ssize_t>(text.size());
-    ::_exit(ok ? 0 : 1);
-  }
-  ::close(ends[1]);
-  std::string text;
-  char chunk[4096];
-  for (ssize_t n; (n = ::read(ends[0], chunk, sizeof chunk)) > 0;)
-    text.append(chunk, static_cast<std::size_t>(n));
-  ::close(ends[0]);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  EXPECT_EQ(status, 0);
+    return out.str();
+  });
   Figures f;
   std::istringstream in(text);
   std::string name;
