@@ -25,27 +25,35 @@ tlm::tlm_sync_enum TcmDma::nb_transport_fw(MemRequest& r, MemPhase& phase,
   return tlm::TLM_UPDATED;
 }
 
+/// Plans the next act.
 void TcmDma::at(Picoseconds t) {
-  const Picoseconds when = std::max(t, kernel_time());
-  const InstantRank rank = instant_rank(queue_.front().request->master);
-  end_of_instant_.at(when, rank, [this, plan = ++plan_] {
-    if (plan == plan_) act();
+  ++plan_;
+  const bool ahead = t > kernel_time();
+  path->memory().passive_acts_at(ahead ? t : kNever);
+  if (!ahead) act_at_present();
+}
+
+void TcmDma::act_at_present() {
+  const Picoseconds now = kernel_time();
+  end_of_instant_.at(now, instant_rank(queue_.front().request->master), [this, now, plan = ++plan_] {
+    if (plan == plan_) act(now);
   });
 }
 
-void TcmDma::act() {
+/// @param now the time of the act, which may lie ahead of the kernel's
+void TcmDma::act(Picoseconds now) {
   if (clk.read().stopped()) return;  // clock_changed() continues
   MemRequest& r = *queue_.front().request;
   if (!begun_) {
     begun_ = true;
-    core_.tcm_burst_begins({r.address, r.bytes, r.master}, kernel_time());
+    core_.tcm_burst_begins({r.address, r.bytes, r.master}, now);
   }
   const Picoseconds over = core_.tcm_burst_over();
-  if (over > kernel_time()) return at(over);  // the core has postponed the end since
-  finish(r);
+  if (over > now) return at(over);  // the core has postponed the end since
+  finish(r, now);
 }
 
-void TcmDma::finish(MemRequest& r) {
+void TcmDma::finish(MemRequest& r, Picoseconds now) {
   core_.tcm_burst_ends(r.write, r.data);
   begun_ = false;
   queue_.pop_front();
@@ -57,14 +65,14 @@ void TcmDma::finish(MemRequest& r) {
   stats.wait_data += data - std::exchange(waited_data_, data);
   r.error = false;
   MemPhase phase = MemPhase::kResponse;
-  sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+  sc_core::sc_time delay = ps_time(now - kernel_time());
   socket->nb_transport_bw(r, phase, delay);
-  if (!queue_.empty()) at(queue_.front().arrival);
+  if (!queue_.empty()) at(std::max(queue_.front().arrival, now));
 }
 
 /// The core has applied the new clock by the time EndOfInstant calls act().
 void TcmDma::clock_changed() {
-  if (!queue_.empty() && !clk.read().stopped()) at(std::max(queue_.front().arrival, kernel_time()));
+  if (!queue_.empty() && !clk.read().stopped()) at(queue_.front().arrival);
 }
 
 }  // namespace fovea::cpu

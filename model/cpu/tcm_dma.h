@@ -4,6 +4,7 @@
 #include <deque>
 #include <systemc>
 
+#include "model/bus/memory_path.h"
 #include "model/common/block.h"
 #include "model/common/mem_sockets.h"
 #include "model/common/end_of_instant.h"
@@ -26,11 +27,13 @@ struct TcmStats : StatGroup {
 };
 
 /// Executes one burst at a time, in order of arrival. Each burst begins and ends after all other
-/// activity of its instant (EndOfInstant), so the core's own accesses of that instant come first.
+/// activity of its instant, so the core's own accesses of that instant come first: ahead of the kernel as
+/// an event of the memory path, which nobody else acts at; at the kernel's present time by EndOfInstant.
 /// While the core's clock is stopped, bursts wait.
-class TcmDma : public sc_core::sc_module, public Block, public MemTargetIf {
+class TcmDma : public sc_core::sc_module, public Block, public MemTargetIf, private memsys::PassiveSlave {
  public:
   MemTargetSocket<32> socket{"socket"};
+  sc_core::sc_port<bus::MemoryPathIf> path{"path"};
   ClockIn clk{"clk"};
   TcmStats stats;
 
@@ -43,16 +46,19 @@ class TcmDma : public sc_core::sc_module, public Block, public MemTargetIf {
     MemRequest* request;
     Picoseconds arrival;
   };
+  void end_of_elaboration() override { path->memory().attach(*this); }
   void at(Picoseconds t);
-  void act();
-  void finish(MemRequest& r);
+  void act_ahead(Picoseconds t) override { act(t); }
+  void act_at_present() override;
+  void act(Picoseconds now);
+  void finish(MemRequest& r, Picoseconds now);
   void clock_changed();
 
   Core& core_;
   EndOfInstant& end_of_instant_;
   std::deque<Waiting> queue_;
   bool begun_ = false;       // the first burst of the queue has begun
-  std::uint64_t plan_ = 0;   // number of the newest scheduled call of act(); older ones do nothing
+  std::uint64_t plan_ = 0;   // number of the newest plan to act; calls for older ones do nothing
   std::uint64_t waited_fetch_ = 0, waited_data_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "model/memsys/memory_system.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "model/common/check.h"
 #include "model/mem/core/ddr_plan.h"
@@ -48,13 +49,22 @@ inline void MemorySystem::step_controller() {
   if (controller_.news().any) handle_news();
 }
 
+[[gnu::noinline]] void MemorySystem::step_passive() {
+  event_time_ = std::exchange(passive_next_, kNever);
+  passive_->act_ahead(event_time_);
+}
+
 [[gnu::noinline]] bool MemorySystem::advance(Picoseconds limit) {
   const std::uint64_t calls = host_calls_;
   for (;;) {
     const Picoseconds crossbar = crossbar_.next_decision(), controller = controller_.next_decision();
-    if (std::min(crossbar, controller) >= limit) return false;
-    // At equal times the order does not matter: each sees the other's acts strictly later.
-    if (crossbar < controller) {
+    const Picoseconds own = std::min(crossbar, controller);
+    if (std::min(own, passive_next_) >= limit) return false;
+    // At equal times the order of the two does not matter: each sees the other's acts strictly later. The slave sees
+    // all of its instant.
+    if (passive_next_ < own) {
+      step_passive();
+    } else if (crossbar < controller) {
       event_time_ = crossbar;
       Link link{*this};
       crossbar_.step(link);
@@ -71,12 +81,13 @@ MemorySystem::Attempt MemorySystem::try_complete(MemRequest& r, Picoseconds limi
   return r.write ? try_grant<true>(r, limit) : try_grant<false>(r, limit);
 }
 
-/// Only the controller has events of its own meanwhile. Those up to the grant come first, since they
-/// may free a queue entry. If one completes a request, the caller's limit may have changed, so the fast
-/// path is given up.
+/// Only the controller has events of its own meanwhile: the passive slave's next act is a limit as well. Those up to
+/// the grant come first, since they may free a queue entry. If one completes a request, the caller's limit may have
+/// changed, so the fast path is given up.
 template <bool kWrite>
 [[gnu::noinline]] MemorySystem::Attempt MemorySystem::try_grant(MemRequest& r, Picoseconds limit) {
   const bus::Crossbar::UncontendedGrant grant = crossbar_.uncontended_grant(r);
+  limit = std::min(limit, passive_next_);
   if (grant.at >= limit) return Attempt::kNotSubmitted;
   const std::uint64_t calls = host_calls_;
   while (controller_.next_decision() <= grant.at) {

@@ -16,6 +16,7 @@
 #include "model/mem/core/ddr_controller.h"
 #include "model/memsys/bypass.h"
 #include "model/memsys/memory_host.h"
+#include "model/memsys/passive_slave.h"
 
 namespace fovea::memsys {
 
@@ -49,7 +50,7 @@ class MemorySystem final : private SlowRequestTeller {
 
   /// Time of the next event; kNever while nothing is to be done before another request comes.
   Picoseconds next_event() const {
-    return std::min(crossbar_.next_decision(), controller_.next_decision());
+    return std::min({crossbar_.next_decision(), controller_.next_decision(), passive_next_});
   }
   /// The one loop that takes events: all strictly before `limit`, in time order. It stops early, and
   /// returns true, after an event in which the host was called: its master may have more requests, or
@@ -76,6 +77,14 @@ class MemorySystem final : private SlowRequestTeller {
   void slave_accepted(MemRequest& request, Picoseconds at);
   /// A slave outside has ended a request at `at`.
   void slave_done(MemRequest& request, Picoseconds at, bool error);
+
+  /// A slave outside whose acts are events of the memory system's own. At most one, before the first request.
+  void attach(PassiveSlave& slave) { passive_ = &slave; }
+  /// The slave's next act; kNever: none. Later than the host's time.
+  void passive_acts_at(Picoseconds t) {
+    passive_next_ = t;
+    host_.rescheduled();
+  }
 
   /// Who is asked while the SDRAM is closed. None: it is always open.
   void set_admission(SdramAdmission& admission) { admission_ = &admission; }
@@ -105,8 +114,15 @@ class MemorySystem final : private SlowRequestTeller {
   Picoseconds event_time() const { return event_time_; }
   /// Of the controller's last event; 0 before the first.
   Picoseconds last_command_time() const { return last_command_; }
-  /// The host's own time, to tell outcomes decided ahead of it from others.
-  void set_present(Picoseconds now) { present_ = now; }
+  /// The host's own time, to tell outcomes decided ahead of it from others. An act of the passive slave that is due is
+  /// no event any more.
+  void set_present(Picoseconds now) {
+    present_ = now;
+    if (passive_next_ <= now) {
+      passive_next_ = kNever;
+      passive_->act_at_present();
+    }
+  }
   /// Outcomes of SDRAM requests decided ahead of the host's time, and all others.
   std::uint64_t decided_ahead() const { return decided_ahead_; }
   std::uint64_t decided_at_present() const { return decided_at_present_; }
@@ -134,6 +150,7 @@ class MemorySystem final : private SlowRequestTeller {
   };
 
   void step_controller();
+  void step_passive();
   template <bool kWrite>
   Attempt try_grant(MemRequest& request, Picoseconds limit);
   Taken forward(MemRequest& r, Picoseconds arrival);
@@ -172,6 +189,8 @@ class MemorySystem final : private SlowRequestTeller {
     Picoseconds at;
   };
   std::vector<Refused> refused_;
+  PassiveSlave* passive_ = nullptr;
+  Picoseconds passive_next_ = kNever;
   const mem::DdrController::ReadOutcome* read_ = nullptr;  // whose outcome is being handled
   std::uint64_t host_calls_ = 0;
   unsigned undecided_ = 0;

@@ -225,6 +225,7 @@ void Dm365::wire_memory() {
     return absent.empty() ? not_modelled_at(address, rows_present(params_.rows, params)) : absent;
   };
   scr.ram_socket.bind(tcm_dma.socket);
+  tcm_dma.path(scr.path);
   for (std::size_t i = 0; i < kMasterCount; ++i) scr.priority[i](priority_[i]);
   vpss.write_priority(priority_[index(master_with(PrioritySource::kVideoWrite))]);
   vpss.read_priority(priority_[index(master_with(PrioritySource::kVideoRead))]);

@@ -155,6 +155,7 @@ std::string run(const Case& s) {
   first.master.socket.bind(*scr.target[index(Master::kEdmaTc0Write)]);
   second.master.socket.bind(*scr.target[index(Master::kEdmaTc1Read)]);
   scr.ram_socket.bind(dma.socket);
+  dma.path(scr.path);
 
   std::string text = kProgram;
   const auto fill_in = [&text](const std::string& word, std::uint64_t value) {

@@ -12,6 +12,13 @@ void DataCache::forget_hints() {
   for (auto* hints : {&read_hints, &write_hints})
     for (auto& h : *hints) h.key = kNoHint;
   absent.key = kNoHint;
+  ram_hints_used_ = 0;
+}
+
+void DataCache::forget_ram_hints() {
+  if (ram_hints_used_ > kRamHints) return forget_hints();
+  for (unsigned k = 0; k < ram_hints_used_; ++k) ram_hints_[k]->key = kNoHint;
+  ram_hints_used_ = 0;
 }
 
 /// To be called when a line comes into the cache. The hint is by virtual address, and FCSE may have changed

@@ -85,11 +85,22 @@ class DataCache {
                                               reinterpret_cast<std::uintptr_t>(half) - key};
     hints_used_ = true;
   }
+  /// The same for internal RAM; `bytes` is the host address of the range that contains `va`.
+  void hint_ram_reads(std::uint32_t va, std::uint32_t mva, std::uint8_t* bytes, std::uint64_t& counter) {
+    hint_reads(va, mva, bytes, counter);
+    note_ram_hint(read_hints[mva / kReadSpan % kHints]);
+  }
+  void hint_ram_writes(std::uint32_t va, std::uint32_t mva, std::uint8_t* bytes, std::uint64_t& counter) {
+    hint_writes(va, mva, bytes, counter);
+    note_ram_hint(write_hints[mva / kWriteSpan % kHints]);
+  }
   void hint_absent(std::uint32_t va, std::uint32_t pa) {
     absent = {va & ~(kReadSpan - 1), pa & ~(kReadSpan - 1)};
     hints_used_ = true;
   }
   void forget_hints();
+  /// Forgets those of internal RAM: others begin to use it, so that each access has to be looked at.
+  void forget_ram_hints();
   std::uint32_t counter_offset(const std::uint64_t& counter) const {
     return static_cast<std::uint32_t>(reinterpret_cast<const char*>(&counter) -
                                       reinterpret_cast<const char*>(&ledger_.counts));
@@ -123,13 +134,21 @@ class DataCache {
   void forget_absent(std::uint32_t line_mva);
   void write_back(unsigned line, bool before_fill, Cause cause);
   void announce_load(unsigned line, unsigned offset, unsigned bytes);
+  void note_ram_hint(Hint& hint) {
+    if (ram_hints_used_ < kRamHints) ram_hints_[ram_hints_used_] = &hint;
+    ++ram_hints_used_;
+  }
 
+  static constexpr unsigned kRamHints = 64;  // with more of them, all hints are forgotten
   StallLedger& ledger_;
   DataBus& bus_;
   const SystemRegisters& registers_;
   Cache lines_;
   Observers<LineWatch*> observers_;
   bool hints_used_ = false;
+  /// Where hints of internal RAM were put; others may have taken their places since.
+  std::array<Hint*, kRamHints> ram_hints_{};
+  unsigned ram_hints_used_ = 0;
 };
 
 }  // namespace fovea::cpu

@@ -36,6 +36,7 @@ void FetchUnit::reset() {
 
 void FetchUnit::forget() {
   leave_line();
+  knows_ram_ = false;
   epoch += kEpoch;
   if (epoch >= kEpoch) [[likely]]
     return;
@@ -190,6 +191,7 @@ const Instruction* FetchUnit::decode(DecodedLine& d, const std::uint8_t* bytes,
     d.prepare_record(Instruction(i), at, context, shifted_cycle_);
   }
   if (current && current->va + 32 == line) current->next = &d;
+  knows_ram_ |= ram;
   line_va = line;
   line_thumb = target.thumb ? 0x20u : 0u;
   current = &d;

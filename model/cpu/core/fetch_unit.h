@@ -77,6 +77,8 @@ class FetchUnit {
 
   /// Forgets under which addresses lines were found.
   void forget();
+  /// A line of internal RAM may be found without a lookup.
+  bool knows_ram() const { return knows_ram_; }
   /// Forgets all decoded lines.
   void forget_lines();
   void leave_line() { line_va = kNoLine; }
@@ -96,7 +98,7 @@ class FetchUnit {
   void drop_ram(std::uint32_t offset, std::uint32_t bytes) {
     for (std::uint32_t line = offset >> 5; line <= (offset + bytes - 1) >> 5; ++line)
       ram_decoded_[line].valid = 0;
-    leave_line();
+    if (in_ram()) leave_line();
   }
   /// Lets the handlers of all instructions keep the tallies of their lines. Before the first fetch.
   void keep_tallies(ClockProfile& profile) {
@@ -161,6 +163,7 @@ class FetchUnit {
   std::uint64_t redirects_seen_ = 0;  // value at the last fetch that bypassed the caches
   std::uint32_t buffer_pa_ = 1, words_[4] = {};
 
+  bool knows_ram_ = false;  // a line of internal RAM was found since the last forget()
   std::uint32_t process_ = 0, control_ = SystemRegisters::kControlAtReset;
   std::uint32_t lag_pc_ = 0;  // pc at which the old settings still apply
   unsigned lag_ = 0;          // number of instructions that are still fetched with them, plus one

@@ -45,7 +45,7 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
     if (ram_watch_) [[unlikely]]
       tell_load(pa, bytes);
     else if (ram_.quick())
-      data_.hint_reads(va, mva, ram_.at(pa & ~(DataCache::kReadSpan - 1)), ram_.reads_of(pa));
+      data_.hint_ram_reads(va, mva, ram_.at(pa & ~(DataCache::kReadSpan - 1)), ram_.reads_of(pa));
     return Result::kOk;
   }
   if (t->cacheable && system_.data_cached()) {
@@ -76,8 +76,8 @@ void Core::store_to_ram(std::uint32_t va, std::uint32_t pa, unsigned bytes, std:
   fetch_.drop_ram(ram_.offset(pa));
   ++ram_.writes_of(pa);
   if (ram_.quick())
-    data_.hint_writes(va, system_.modified(va), ram_.at(pa & ~(DataCache::kWriteSpan - 1)),
-                      ram_.writes_of(pa));
+    data_.hint_ram_writes(va, system_.modified(va), ram_.at(pa & ~(DataCache::kWriteSpan - 1)),
+                          ram_.writes_of(pa));
 }
 
 Core::Result Core::store(std::uint32_t va, unsigned bytes, std::uint32_t value, Rights rights) {
@@ -263,8 +263,9 @@ void Core::tcm_burst_begins(const TcmPort::Burst& burst, Picoseconds at) {
   FOVEA_CHECK(!ram_.port().busy() && burst.bytes > 0 && burst.offset + burst.bytes <= ram_.size(),
               "bad burst to internal RAM");
   ram_.port().begin(burst, interface_.clock.edge_after(at));
-  // Discard everything that was remembered about internal RAM.
-  forget_translations();
+  // Until the burst ends each access to internal RAM has to be looked at.
+  data_.forget_ram_hints();
+  if (fetch_.knows_ram()) fetch_.forget();
 }
 
 void Core::tcm_burst_ends(bool write, std::uint8_t* data) {
