@@ -9,16 +9,11 @@ endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1")
 set(CMAKE_C_FLAGS_RELEASE "-O2 -g1")
 
-# Optimisation across the files of the hot libraries (fovea_hot).
-option(FOVEA_LTO "Link-time optimisation of the program (release builds with GCC)" ON)
+# Full optimisation of the hot libraries (fovea_hot).
+option(FOVEA_HOT "-O3 for what is on the path of every instruction or memory access (release builds with GCC)" ON)
 if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR NOT CMAKE_BUILD_TYPE STREQUAL "Release"
    OR FOVEA_SANITIZE OR FOVEA_COVERAGE)
-  set(FOVEA_LTO OFF)
-endif()
-if(FOVEA_LTO)
-  # GCC's linker plugin optimises every program whose objects permit it, unless told otherwise. Only those that are
-  # measured ask for it.
-  add_link_options(-fno-lto)
+  set(FOVEA_HOT OFF)
 endif()
 
 find_program(CCACHE ccache)
@@ -92,12 +87,11 @@ function(fovea_library name)
   target_link_libraries(${name} PUBLIC fovea_warnings)
 endfunction()
 
-# fovea_hot(NAME): a library on the path of every instruction or memory access. The program `fovea`
-# is optimised across these as a whole; tests link their ordinary code, which is quicker to build.
+# fovea_hot(NAME): a library on the path of every instruction or memory access.
 function(fovea_hot name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
-  if(FOVEA_LTO)
-    target_compile_options(${name} PRIVATE -O3 -fno-plt -flto=auto -ffat-lto-objects)
+  if(FOVEA_HOT)
+    target_compile_options(${name} PRIVATE -O3 -fno-plt)
   elseif(FOVEA_SANITIZE STREQUAL "address")
     target_compile_options(${name} PRIVATE -O1)
   endif()

@@ -174,6 +174,10 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   const bool complete = replay_to_end(path, trace.info->start, context);
   path.finish();
   if (commands) commands->finish();
+  if (!options.sets.empty() && path.waited_in_ram())
+    Diagnostics::instance().configuration(fmt::format(
+        "bursts of the EDMA waited {} core clocks in internal RAM for the core: as in the recorded run, which a run "
+        "with these settings need not do; its figures may differ (replay.ram_waits)", path.waited_in_ram()));
   const double wall = std::chrono::duration<double>(Wall::now() - started).count();
 
   std::vector<StatRow> stats = path.stats();

@@ -29,6 +29,7 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
       info_(info),
       source_(source),
       memory_only_(memory_only),
+      slaves_(info.edma),
       start_(info.start),
       last_(info.start),
       memory_(params.crossbar, params.ddr, {.ram_size = INTERNAL_RAM_BYTES}, *this,
@@ -385,9 +386,9 @@ void ReplayPath::submit_transfer(unsigned stream) {
     return side.address - memory_.map().ram_base < memory_.map().ram_size;
   };
   if (moves && in_ram(request.source))
-    ram_bursts_[index(edma_read(s.controller))].push_back({request.bytes(), s.record.ram_waits[false]});
+    slaves_.expect(edma_read(s.controller), request.bytes(), s.record.ram_waits[false]);
   if (moves && in_ram(request.destination))
-    ram_bursts_[index(edma_write(s.controller))].push_back({request.bytes(), s.record.ram_waits[true]});
+    slaves_.expect(edma_write(s.controller), request.bytes(), s.record.ram_waits[true]);
   set_time(stream, kNever);
   if (moves) pipes_[s.controller]->submit(request, burst, now);
   fetch(stream);
@@ -411,36 +412,23 @@ void ReplayPath::send(ReplayPipe::Burst& burst) {
   }
   if (sdram || !memory_only_) masters_[index(burst.master)].count(burst.write, burst.bytes);
   // The crossbar takes a request before its time; without it there is nothing that would hold it back.
-  if (memory_only_) return add_served({&burst, burst.issued, true});
+  if (memory_only_) return slaves_.add({&burst, burst.issued, true});
   memory_.submit(burst);
 }
 
-/// The internal RAM takes one burst at a time, registers one word of a master at a time.
 void ReplayPath::serve(MemRequest& r, bus::Slave slave, Picoseconds arrival) {
-  const trace::EdmaInfo& edma = info_.edma;
   Picoseconds done = 0;
   if (slave == bus::Slave::kInternalRam) {
-    const Clock& core = streams_[0].clock;
-    const std::uint64_t words = ((r.address & 3u) + r.bytes + 3) / 4;
-    const std::uint64_t begin = core.edge_after(std::max(arrival, ram_free_));
-    done = ram_free_ =
-        core.edge(begin + edma.ram_latency + words * edma.ram_word_clocks + ram_waits(r) - 1);
+    done = slaves_.serve_ram(r, streams_[0].clock, arrival);
+  } else if (is_core(r.master)) {
+    const auto& slot = static_cast<Slot&>(r);
+    done = slaves_.serve_registers(r, slot.service, arrival);
+    delivered(slot, done);
   } else {
-    Picoseconds& free = registers_free_[index(r.master)];
-    const bool aside = is_core(r.master);
-    const Picoseconds one = aside ? static_cast<Slot&>(r).service : edma.register_latency;
-    done = free = std::max(arrival, free) + one * (aside ? 1u : (r.bytes + 3u) / 4);
-    if (aside) delivered(static_cast<Slot&>(r), done);
+    done = slaves_.serve_registers(r, arrival);
   }
   if (!is_core(r.master)) static_cast<ReplayPipe::Burst&>(r).delivered = done;
-  add_served({&r, done});
-}
-
-void ReplayPath::add_served(const Served& s) {
-  const auto place = std::upper_bound(served_.begin(), served_.end(), s.at,
-                                      [](Picoseconds t, const Served& other) { return t < other.at; });
-  served_.insert(place, s);
-  served_at_ = served_.front().at;
+  slaves_.add({&r, done});
 }
 
 /// The core's write changes its register at `at`.
@@ -450,26 +438,13 @@ void ReplayPath::delivered(const Slot& slot, Picoseconds at) {
   wake_those_behind(stream);
 }
 
-/// Clocks of the core for which the next burst of a transfer waits for it, as recorded.
-std::uint32_t ReplayPath::ram_waits(const MemRequest& r) {
-  auto& transfers = ram_bursts_[index(r.master)];
-  if (transfers.empty()) return 0;
-  RamBursts& t = transfers.front();
-  const std::uint32_t waits = t.next < t.waits.size() ? t.waits[t.next++] : 0;
-  t.left -= std::min<std::uint32_t>(r.bytes, t.left);
-  if (t.left == 0) transfers.pop_front();
-  return waits;
-}
-
 Taken ReplayPath::deliver(MemRequest& r, bus::Slave slave, Picoseconds arrival) {
   serve(r, slave, arrival);
   return Taken::kYes;
 }
 
 void ReplayPath::finish_served() {
-  const Served first = served_.front();
-  served_.erase(served_.begin());
-  served_at_ = served_.empty() ? kNever : served_.front().at;
+  const ReplaySlaves::Due first = slaves_.take();
   if (first.arrives) {
     if (first.request->address >= memory_.map().ddr_base) return memory_.submit(*first.request);
     return serve(*first.request, memory_.slave_of(*first.request), first.at);
@@ -553,15 +528,15 @@ bool ReplayPath::run_before(Picoseconds until) {
   if (ended_early_ != kNever) return true;
   for (;;) {
     if (stop_ < until) until = stop_;
-    const Picoseconds event = memory_.next_event();
-    if (served_at_ < std::min(next_time_, event)) [[unlikely]] {  // after all else of its instant
-      if (served_at_ >= until) break;
+    const Picoseconds event = memory_.next_event(), slave = slaves_.next();
+    if (slave < std::min(next_time_, event)) [[unlikely]] {  // after all else of its instant
+      if (slave >= until) break;
       finish_served();
     } else if (next_time_ <= event) {
       if (next_time_ >= until) break;
       issue();
-    } else if (!memory_.advance(std::min({next_time_, until, served_at_ == kNever ? kNever : served_at_ + 1})) &&
-               until <= next_time_ && until <= served_at_) {
+    } else if (!memory_.advance(std::min({next_time_, until, slave == kNever ? kNever : slave + 1})) &&
+               until <= next_time_ && until <= slaves_.next()) {
       break;
     }
   }

@@ -1,7 +1,6 @@
 // The memory system played from a trace, without core, video and SystemC.
 #pragma once
 #include <array>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/replay_params.h"
 #include "sw/fovea/replay_pipe.h"
+#include "sw/fovea/replay_slaves.h"
 #include "sw/fovea/slowest.h"
 #include "sw/fovea/wake_order.h"
 
@@ -67,6 +67,8 @@ class ReplayPath final : private memsys::MemoryHost {
   const std::string& label(Master m) const { return masters_[index(m)].label; }
   Picoseconds start() const { return start_; }
   const mem::DdrStats& memory() const { return ddr().stats; }
+  /// Clocks of the core for which bursts have waited in internal RAM: as recorded, whatever the settings are.
+  std::uint64_t waited_in_ram() const { return slaves_.waited_in_ram(); }
   /// Called with each record as it goes out; empty in a plain replay.
   std::function<void(unsigned stream, Picoseconds at)> on_issue;
   /// No request will go out before that time any more.
@@ -118,19 +120,6 @@ class ReplayPath final : private memsys::MemoryHost {
     std::vector<Outcome> history;
     unsigned controller = kTransferControllers;  // whose transfers it holds; kTransferControllers: none's
   };
-  /// Bytes that a transfer has still to read from, or to write to internal RAM, and the clocks of the core for which
-  /// its bursts wait for it there.
-  struct RamBursts {
-    std::uint32_t left = 0;
-    std::vector<std::uint16_t> waits;
-    std::size_t next = 0;
-  };
-  /// A request to a slave that is no part of the memory system, or one that is yet to arrive.
-  struct Served {
-    MemRequest* request;
-    Picoseconds at;
-    bool arrives = false;
-  };
 
   void set_up_memory(const ReplayParams& params);
   void set_up_streams();
@@ -155,11 +144,9 @@ class ReplayPath final : private memsys::MemoryHost {
   void submit_transfer(unsigned stream);
   void send(ReplayPipe::Burst& burst);
   void serve(MemRequest& r, bus::Slave slave, Picoseconds arrival);
-  void add_served(const Served& s);
   void delivered(const Slot& slot, Picoseconds at);
-  std::uint32_t ram_waits(const MemRequest& r);
   void finish_served();
-  Picoseconds next_event() const { return std::min(memory_.next_event(), served_at_); }
+  Picoseconds next_event() const { return std::min(memory_.next_event(), slaves_.next()); }
   void wake_those_behind(unsigned stream);
   Picoseconds released(const Stream& s) const;
   static std::uint64_t aligned(const Stream& s, std::uint64_t edge);
@@ -194,11 +181,7 @@ class ReplayPath final : private memsys::MemoryHost {
   std::array<std::unique_ptr<ReplayPipe>, kTransferControllers> pipes_;
   Clock scr_;                          // of the transfers
   Picoseconds next_request_ = 0;       // when the channel controller takes the next request
-  std::vector<Served> served_;         // by time
-  Picoseconds served_at_ = kNever;     // of the first one
-  Picoseconds ram_free_ = 0;
-  std::array<std::deque<RamBursts>, kMasterCount> ram_bursts_;  // by master, of its transfers in order
-  std::array<Picoseconds, kMasterCount> registers_free_{};
+  ReplaySlaves slaves_;
   unsigned next_stream_ = 0;
   Picoseconds next_time_ = kNever;
   Picoseconds start_ = 0, last_ = 0;

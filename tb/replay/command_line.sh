@@ -42,6 +42,13 @@ expect staged_recorded 0 -- run "${staged[@]}" -o "$out/staged" --bus-trace "$ou
 expect staged_without 0 -- run "${staged[@]}" -o "$out/staged_without"
 expect staged_memory_only 0 '^replayed [0-9]{5,} requests' -- replay "$out/staged.trace" --memory-only
 cmp "$out/staged/stats.json" "$out/staged_without/stats.json" || fail 'recording changes a run by staged'
+# What the trace keeps whatever the settings are is named, where there are other settings.
+kept_waits='bursts of the EDMA waited [1-9][0-9]* core clocks in internal RAM for the core: as in the recorded run'
+expect staged_other 0 "warning \(configuration\): $kept_waits" -- replay "$out/staged.trace" -s ddr.scheduler=fcfs
+grep -qE "$kept_waits" "$out/replay/stats.json" || fail 'stats.json does not name the waits that are kept'
+text=$(replay "$out/staged.trace" 2>&1)
+grep -qE "$kept_waits" <<<"$text" && fail 'waits are said to be kept where nothing is set'
+grep -qE '"replay.ram_waits": \{"value": [1-9]' "$out/replay/stats.json" || fail 'no replay.ram_waits'
 expect strict 0 -- run -o "$out/strict" --sync=strict --bus-trace "$out/strict.trace"
 cmp "$trace" "$out/strict.trace" || fail 'strict and default record different traces'
 # The EDMA's copies between places of the SDRAM wait for nothing that the trace does not hold.
