@@ -131,12 +131,16 @@ Form parse(const IsaRow& row) {
 class Lookup {
  public:
   Lookup() {
-    const auto rows = isa_rows();
-    for (const IsaRow& r : rows) forms.push_back(parse(r));
-    for (std::uint32_t key = 0; key < 1024; ++key) list(true, key << 6, 0xFFC0u);
-    for (std::uint32_t key = 0; key < 8192; ++key)
-      list(false, (key >> 12 ? 0xF0000000u : 0) | (key >> 4 & 0xFFu) << 20 | (key & 15u) << 4,
-           key >> 12 ? 0xFFF000F0u : 0x0FF000F0u);
+    std::vector<std::uint16_t> thumb, conditional, never;  // rows; the last are ARM words with 1111 in front
+    for (const IsaRow& r : isa_rows()) {
+      forms.push_back(parse(r));
+      auto& rows = r.thumb() ? thumb : forms.back().bits.mask >> 28 == 15 ? never : conditional;
+      rows.push_back(static_cast<std::uint16_t>(forms.size() - 1));
+    }
+    for (std::uint32_t key = 0; key < 1024; ++key) list(thumb, key << 6, 0xFFC0u);
+    for (const auto* rows : {&conditional, &never})
+      for (std::uint32_t key = 0; key < 4096; ++key)
+        list(*rows, (key >> 4 & 0xFFu) << 20 | (key & 15u) << 4, 0x0FF000F0u);
     first.push_back(static_cast<std::uint32_t>(candidates.size()));
   }
   int find(std::uint32_t w, bool thumb) const {
@@ -152,18 +156,11 @@ class Lookup {
   std::vector<Form> forms;
 
  private:
-  /// Lists the rows that a word with these key bits can match.
-  void list(bool thumb, std::uint32_t word, std::uint32_t key_bits) {
-    const auto rows = isa_rows();
+  /// Lists those of the rows that a word with these key bits can match.
+  void list(const std::vector<std::uint16_t>& rows, std::uint32_t word, std::uint32_t key_bits) {
     first.push_back(static_cast<std::uint32_t>(candidates.size()));
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      if (rows[k].thumb() != thumb) continue;
-      const IsaBits& b = forms[k].bits;
-      const bool never = (b.mask >> 28) == 15;
-      if (!thumb && never != (word >> 28 == 15)) continue;
-      if (((word ^ b.value) & b.mask & key_bits) == 0)
-        candidates.push_back(static_cast<std::uint16_t>(k));
-    }
+    for (const std::uint16_t k : rows)
+      if (((word ^ forms[k].bits.value) & forms[k].bits.mask & key_bits) == 0) candidates.push_back(k);
   }
   std::vector<std::uint32_t> first;
   std::vector<std::uint16_t> candidates;

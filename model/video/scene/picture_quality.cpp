@@ -1,5 +1,6 @@
 #include "model/video/scene/picture_quality.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,8 @@ namespace {
 constexpr double kSigma = 1.5;
 constexpr double kC1 = 0.01 * 255 * 0.01 * 255, kC2 = 0.03 * 255 * 0.03 * 255;
 
+using Weights = std::array<double, kSsimWindow>;
+
 void check_sizes(const Picture& a, const Picture& b) {
   if (a.width != b.width || a.height != b.height)
     throw UserError("two pictures of different sizes cannot be compared");
@@ -23,8 +26,8 @@ void check_mask(const Picture& a, const PictureMask& mask) {
     throw UserError("a mask of another size than the pictures that are compared");
 }
 
-std::array<double, kSsimWindow> window_weights() {
-  std::array<double, kSsimWindow> w{};
+Weights window_weights() {
+  Weights w{};
   double sum = 0;
   for (unsigned i = 0; i < kSsimWindow; ++i) {
     const double d = static_cast<double>(i) - kSsimWindow / 2;
@@ -34,21 +37,44 @@ std::array<double, kSsimWindow> window_weights() {
   return w;
 }
 
-/// Sums in a window: of both pictures, of their squares, and of their product.
+/// Of windows, one beside the other: weighted sums of both pictures, of their squares, and of their product.
 struct Moments {
-  double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-  void add(double weight, const Moments& m) {
-    a += weight * m.a;
-    b += weight * m.b;
-    aa += weight * m.aa;
-    bb += weight * m.bb;
-    ab += weight * m.ab;
-  }
+  std::vector<double> a, b, aa, bb, ab;
+  explicit Moments(std::size_t n) : a(n), b(n), aa(n), bb(n), ab(n) {}
 };
+constexpr std::array kMoments{&Moments::a, &Moments::b, &Moments::aa, &Moments::bb, &Moments::ab};
 
-double similarity(const Moments& m) {
-  const double var_a = m.aa - m.a * m.a, var_b = m.bb - m.b * m.b, cov = m.ab - m.a * m.b;
-  return (2 * m.a * m.b + kC1) * (2 * cov + kC2) / ((m.a * m.a + m.b * m.b + kC1) * (var_a + var_b + kC2));
+/// to[u] = the sum of weights[i] * from[u + i * step], in the order of i, for n values of u.
+void weigh(const Weights& weights, const double* from, std::size_t step, double* to, std::size_t n) {
+  for (std::size_t u = 0; u < n; ++u) {
+    double sum = 0;
+    for (unsigned i = 0; i < kSsimWindow; ++i) sum += weights[i] * from[i * step + u];
+    to[u] = sum;
+  }
+}
+
+/// Sums along each row, for each window of it.
+Moments moments_along(const Picture& a, const Picture& b, const Weights& weights, std::size_t columns) {
+  Moments along(a.height * columns), pixels(a.width);
+  for (unsigned v = 0; v < a.height; ++v) {
+    for (unsigned u = 0; u < a.width; ++u) {
+      const double x = a.row(v)[2 * u + 1], y = b.row(v)[2 * u + 1];
+      pixels.a[u] = x;
+      pixels.b[u] = y;
+      pixels.aa[u] = x * x;
+      pixels.bb[u] = y * y;
+      pixels.ab[u] = x * y;
+    }
+    for (const auto moment : kMoments)
+      weigh(weights, (pixels.*moment).data(), 1, (along.*moment).data() + v * columns, columns);
+  }
+  return along;
+}
+
+double similarity(const Moments& m, std::size_t u) {
+  const double a = m.a[u], b = m.b[u];
+  const double var_a = m.aa[u] - a * a, var_b = m.bb[u] - b * b, cov = m.ab[u] - a * b;
+  return (2 * a * b + kC1) * (2 * cov + kC2) / ((a * a + b * b + kC1) * (var_a + var_b + kC2));
 }
 
 /// Whether all pixels of the windows of a row are compared, for each window; by sums of those that are not.
@@ -84,25 +110,19 @@ class WholeWindows {
 /// The mean over the windows that `row(v)` names.
 template <class Rows>
 double mean_similarity(const Picture& a, const Picture& b, Rows&& row) {
-  const auto weights = window_weights();
-  const unsigned columns = a.width - kSsimWindow + 1, rows = a.height - kSsimWindow + 1;
-  // Row by row: sums along each row first, then down the columns.
-  std::vector<Moments> along(std::size_t{a.height} * columns);
-  for (unsigned v = 0; v < a.height; ++v)
-    for (unsigned u = 0; u < columns; ++u)
-      for (unsigned i = 0; i < kSsimWindow; ++i) {
-        const double x = a.row(v)[2 * (u + i) + 1], y = b.row(v)[2 * (u + i) + 1];
-        along[std::size_t{v} * columns + u].add(weights[i], {x, y, x * x, y * y, x * y});
-      }
+  const Weights weights = window_weights();
+  const std::size_t columns = a.width - kSsimWindow + 1, rows = a.height - kSsimWindow + 1;
+  const Moments along = moments_along(a, b, weights, columns);
+  Moments windows(columns);
   double sum = 0;
   std::uint64_t count = 0;
   for (unsigned v = 0; v < rows; ++v) {
     const std::vector<bool> counted = row(v);
-    for (unsigned u = 0; u < columns; ++u) {
+    for (const auto moment : kMoments)
+      weigh(weights, (along.*moment).data() + v * columns, columns, (windows.*moment).data(), columns);
+    for (std::size_t u = 0; u < columns; ++u) {
       if (!counted[u]) continue;
-      Moments m;
-      for (unsigned i = 0; i < kSsimWindow; ++i) m.add(weights[i], along[std::size_t{v + i} * columns + u]);
-      sum += similarity(m);
+      sum += similarity(windows, u);
       ++count;
     }
   }
