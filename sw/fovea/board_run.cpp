@@ -26,6 +26,7 @@
 #include "sw/fovea/mosaic_score.h"
 #include "sw/fovea/parameter_page.h"
 #include "sw/fovea/perfetto/perfetto_run.h"
+#include "sw/fovea/side_output.h"
 #include "sw/fovea/picture_score.h"
 #include "sw/fovea/run_end.h"
 #include "sw/fovea/run_profile.h"
@@ -493,16 +494,19 @@ void BoardSimulation::collect(Session& s, RunResult& result) {
     result.untyped = s.console->open_step();
   }
   if (s.semihosting) result.exit_code = s.semihosting->exit_code();
-  if (trace_) trace_->finish();
-  if (commands_) commands_->finish();
+  if (trace_) side_output(result.lost, "--bus-trace", [&] { trace_->finish(); });
+  if (commands_) side_output(result.lost, "--command-trace", [&] { commands_->finish(); });
   if (around_) result.around = around_->csv();
   if (perfetto_)
-    if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
+    side_output(result.lost, "--perfetto", [&] {
+      if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
+    });
   result.guest_failure = s.guest;
   const cpu::Counts counted = figures_->collect(result);
   if (mosaic_score_) mosaic_score_->add(result.stats, board_->camera_stats());
   if (picture_score_) picture_score_->add(result.stats);
-  if (profile_) collect_profile(result, counted, s.request, s.program);
+  if (profile_)
+    side_output(result.lost, "--profile", [&] { collect_profile(result, counted, s.request, s.program); });
   if (s.hazards) {
     s.hazards->settle(board_->window_end().value_or(kernel_time()));
     s.hazards->collect(result.stats);

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -38,11 +37,6 @@ void append_printable(std::string& out, std::string_view text, std::size_t i) {
 }
 }  // namespace
 
-CheckedFile::CheckedFile(std::filesystem::path path) : path_(std::move(path)) {
-  fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd_ < 0) fail(errno);
-}
-
 CheckedFile::CheckedFile(std::filesystem::path path, int folder) : path_(std::move(path)) {
   fd_ = ::openat(folder, path_.filename().c_str(),
                  O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -53,6 +47,8 @@ CheckedFile::CheckedFile(std::filesystem::path path, New) : path_(std::move(path
   fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (fd_ < 0) fail(errno);
 }
+
+CheckedFile::CheckedFile(std::filesystem::path path, Open open) : path_(std::move(path)), fd_(open.fd) {}
 
 CheckedFile::~CheckedFile() {
   if (fd_ >= 0) ::close(fd_);
@@ -85,10 +81,6 @@ void CheckedFile::sync() {
   if (::fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) fail(errno);
 }
 
-void CheckedFile::lock() {
-  if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) fail(errno);
-}
-
 void CheckedFile::flush() {
   put(buffer_.data(), buffer_.size());
   buffer_.clear();
@@ -108,18 +100,6 @@ void CheckedFile::fail(int error) {
   buffer_.clear();
   throw UserError(
       fmt::format("cannot write '{}': {}", one_line(path_.string()), std::strerror(error)));
-}
-
-void write_file(const std::filesystem::path& path, std::string_view text) {
-  CheckedFile file(path);
-  file.write(text);
-  file.close();
-}
-
-void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
-  CheckedFile file(path);
-  file.write(bytes);
-  file.close();
 }
 
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes) {

@@ -12,14 +12,17 @@ namespace fovea::app {
 /// line with the name of the file and the reason; data are never lost silently.
 class CheckedFile {
  public:
-  /// Creates or truncates `path`. @throws UserError if it cannot be opened
-  explicit CheckedFile(std::filesystem::path path);
   /// Creates a new file in the open folder `folder`. Its name is the last component of `path`; the
-  /// rest is used in messages. The file must not exist. @throws UserError
+  /// rest is used in messages. The file must not exist, not even as a symbolic link. @throws UserError
   CheckedFile(std::filesystem::path path, int folder);
-  /// Creates a file that must not exist, not even as a symbolic link. @throws UserError
+  /// The same with the folder that `path` names.
   struct New {};
   CheckedFile(std::filesystem::path path, New);
+  /// Writes to the open descriptor `fd`, and closes it. `path` is for messages.
+  struct Open {
+    int fd;
+  };
+  CheckedFile(std::filesystem::path path, Open open);
   /// Closes without reporting errors; call close() first to have them reported.
   ~CheckedFile();
   CheckedFile(const CheckedFile&) = delete;
@@ -31,8 +34,6 @@ class CheckedFile {
   void close();
   /// Makes sure that everything written has reached the disk. @throws UserError
   void sync();
-  /// Locks the file against other processes that lock it, until it is closed.
-  void lock();
   const std::filesystem::path& path() const { return path_; }
 
  private:
@@ -43,10 +44,6 @@ class CheckedFile {
   std::string buffer_;
   int fd_ = -1;
 };
-
-/// Writes a whole file. @throws UserError as CheckedFile does
-void write_file(const std::filesystem::path& path, std::string_view text);
-void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
 /// Upper limit of the size of an experiment or a calibration, in bytes.
 inline constexpr std::size_t kMaxSettingsBytes = 1u << 20;

@@ -6,15 +6,17 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
+#include <ctime>
 #include <new>
 #include <ostream>
 #include <system_error>
 
+#include "sw/fovea/child_process.h"
 #include "sw/fovea/cli_exec.h"
 #include "sw/fovea/cli_help.h"
 #include "sw/fovea/cli_limits.h"
 #include "sw/fovea/cli_run.h"
-#include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/host_console.h"
 #include "sw/fovea/limits/limits_command.h"
 #include "sw/fovea/params_table.h"
@@ -71,10 +73,25 @@ std::atomic<bool> g_stop{false};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "a signal handler may only touch lock-free atomics");
 
+/// Signals within this time, in ms, are one: timeout(1) sends each to the program and then to its group.
+constexpr std::int64_t kOneSignalMs = 250;
+std::atomic<std::int64_t> g_first_ms{0};
+
+/// The first signal asks to stop. A second Ctrl-C ends a program that does not react any more.
 void on_signal(int signal) {
-  RawTerminal::restore();  // a second signal ends the process at once
-  g_signal = signal;
-  g_stop = true;
+  RawTerminal::restore();
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  const std::int64_t ms = std::int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000;
+  if (!g_stop) {
+    g_first_ms = ms;
+    g_signal = signal;
+    g_stop = true;
+  } else if (ms - g_first_ms >= kOneSignalMs) {
+    kill_children();
+    ::signal(signal, SIG_DFL);
+    ::raise(signal);  // acts when this handler returns
+  }
 }
 
 }  // namespace
@@ -89,9 +106,7 @@ void install_signals(CliContext& context) {
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
-  // The handler is reset after one signal: a second Ctrl-C ends a program that does not react any
-  // more.
-  action.sa_flags = SA_RESETHAND | SA_RESTART;
+  action.sa_flags = SA_RESTART;
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
   ::signal(SIGPIPE, SIG_IGN);

@@ -70,6 +70,7 @@ ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOpt
   out.host = std::move(result.host);
   out.stalls = std::move(result.stalls);
   out.registers = std::move(result.registers);
+  out.lost = std::move(result.lost);
   out.profile = std::move(result.profile);
   out.hazards = std::move(result.hazards);
   if (!result.exit_code) out.ended = std::move(result.ended);
@@ -274,10 +275,11 @@ void write_program_results(const ExecOptions& o, const ExecResult& result, const
 
 /// The exit status. `lost`: the program's output could not be written. @throws GuestFailure, UserError
 int program_status(const ExecOptions& o, const ExecResult& result, bool lost, const CliContext& context) {
+  for (const std::string& why : result.lost) say_note(why + "; the other results are there", context);
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
   if (o.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
   if (lost) throw UserError("the program's output cannot be written");
-  if (result.complete) return result.exit_code;
+  if (result.complete) return result.lost.empty() ? result.exit_code : kExitWrongInput;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << fmt::format("fovea: stopped {}; the figures cover what was simulated\n",
                              result.killed && !signal ? "by the debugger" : "before the end");

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <ostream>
@@ -25,6 +26,7 @@
 #include "sw/fovea/row_files.h"
 #include "sw/fovea/run_dir.h"
 #include "sw/fovea/run_until.h"
+#include "sw/fovea/side_output.h"
 #include "sw/fovea/warnings.h"
 
 namespace fovea::app {
@@ -107,8 +109,8 @@ struct RunConsole {
 /// The pictures that a run writes: what was displayed, and what the camera sent of it.
 class PictureFiles {
  public:
-  PictureFiles(const RunOptions& options, RunDir& dir)
-      : wanted_(!options.no_frames || options.mp4), displayed_(displayed(options, dir)) {
+  PictureFiles(const RunOptions& options, RunDir& dir, const std::atomic<bool>& stop)
+      : wanted_(!options.no_frames || options.mp4), displayed_(displayed(options, dir, stop)) {
     if (!options.no_frames)
       sent_.emplace(FrameWriterOptions{.folder = dir.folder() / "camera",
                                        .folder_fd = dir.make_folder("camera")});
@@ -117,14 +119,18 @@ class PictureFiles {
     if (wanted_) request.frame = [this](const DisplayedFrame& f) { push(displayed_, f); };
     if (sent_) request.camera = [this](const DisplayedFrame& f) { push(*sent_, f); };
   }
-  void close() {
+  /// @param lost receives why there is no film
+  void close(std::vector<std::string>& lost) {
     displayed_.close();
     if (sent_) sent_->close();
+    if (!displayed_.lost_video().empty()) lost.push_back(displayed_.lost_video());
   }
 
  private:
-  static FrameWriterOptions displayed(const RunOptions& options, RunDir& dir) {
+  static FrameWriterOptions displayed(const RunOptions& options, RunDir& dir, const std::atomic<bool>& stop) {
     FrameWriterOptions out;
+    // An encoder that works is waited for also after a signal, since the film belongs to the partial results.
+    out.patience = {.stop = &stop, .silence_after_stop = std::chrono::seconds(3)};
     if (!options.no_frames) {
       out.folder = dir.folder() / "frames";
       out.folder_fd = dir.make_folder("frames");
@@ -154,13 +160,14 @@ void report_run(const RunOptions& options, const RunResult& result, const std::v
   const StatRow* shown = find(result.stats, "frame.displayed");
   if (!options.no_frames && shown && shown->value != StatBase::Value(std::uint64_t{0}))
     report << "pictures in its frames/ (displayed) and camera/ (what the camera sent)\n";
-  if (options.report)
+  if (options.report && fs::exists(dir.folder() / "report.html"))
     report << fmt::format("report in {}\n", (dir.folder() / "report.html").string());
   report << std::flush;
 }
 
 /// The exit status of a run whose results are written. @throws GuestFailure, UserError
 int run_status(const RunOptions& options, const RunResult& result, bool quit, const CliContext& context) {
+  for (const std::string& why : result.lost) say_note(why + "; the other results are there", context);
   if (!result.untyped.empty())
     context.err << fmt::format("fovea: warning: uart0.input is not over: {}\n", result.untyped);
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
@@ -168,7 +175,7 @@ int run_status(const RunOptions& options, const RunResult& result, bool quit, co
   if (!context.out) throw UserError("the program's output cannot be written");
   if (result.complete && result.exit_code.value_or(0) != 0)
     throw GuestFailure(fmt::format("the program ended with status {}", *result.exit_code));
-  if (result.complete) return kExitDone;
+  if (result.complete) return result.lost.empty() ? kExitDone : kExitWrongInput;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << "fovea: stopped before the end; the figures cover what was simulated\n";
   if (quit) return 128 + SIGINT;
@@ -202,7 +209,9 @@ std::vector<StatRow> write_run(RunDir& dir, RunResult& result, ProgressMeter& me
   std::vector<StatRow> host;
   write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
   if (options.report)
-    add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment);
+    side_output(result.lost, "--report", [&] {
+      add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment);
+    });
   say_note(dir.commit(result.complete && result.guest_failure.empty()), context);
   context.out.flush();
   return host;
@@ -252,7 +261,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   RunConsole console(options, stop, context);
   // A progress line that is updated in place would overwrite the console's output.
   ProgressMeter meter(context.err, context.terminal && !options.console);
-  PictureFiles pictures(options, dir);
+  PictureFiles pictures(options, dir, stop);
   RunRequest request{.params = params,
                      .folder = dir.folder(),
                      .stop = stop,
@@ -270,7 +279,7 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   RunResult result = run_simulation(*simulation, request, meter);
   console.raw.reset();
   meter.finish();
-  pictures.close();
+  pictures.close(result.lost);
 
   rows.finish(result);
   const std::vector<StatRow> host =

@@ -50,6 +50,7 @@ struct ExecResult {
   ProfileResult profile;  ///< if requested
   std::string hazards;    ///< with --hazards: a sentence about those found; empty: none
   std::string ended;      ///< with --board: a sentence about what ended the run; may be empty
+  std::vector<std::string> lost = {};  ///< why outputs beside the results could not be written, a sentence each
 };
 
 /// A machine that runs one program.

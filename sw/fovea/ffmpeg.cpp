@@ -2,11 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,13 +16,10 @@
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/png.h"
 
-extern char** environ;
-
 namespace fovea::app {
 namespace {
 
 constexpr std::size_t kMaxMessageBytes = 4096;
-constexpr int kPollMs = 100;  ///< interval in which the stop flag is checked, in ms
 
 /// Demuxers of ffmpeg that read one video or picture from the given file only. Excluded on purpose:
 /// hls, dash, concat, imf (lists of files), image2 (patterns of names), tty and the like (text),
@@ -41,14 +33,6 @@ constexpr const char* kFormats =
 /// suffix.
 constexpr const char* kFootage = "file:/dev/stdin";
 
-void check_stop(const std::atomic<bool>* stop) {
-  if (stop && stop->load()) throw Stopped();
-}
-
-void close_fd(int& fd) {
-  if (fd >= 0) ::close(std::exchange(fd, -1));
-}
-
 /// A descriptor that is closed at the end of its scope or earlier.
 class Descriptor {
  public:
@@ -57,7 +41,9 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return fd_; }
-  void close() { close_fd(fd_); }
+  void close() {
+    if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+  }
 
  private:
   int fd_;
@@ -108,138 +94,6 @@ std::optional<RgbImage> take_frame(std::string& buffer) {
 }
 
 }  // namespace
-
-ChildProcess::ChildProcess(const std::vector<std::string>& command, Stream data,
-                           const std::string& purpose, int stdin_fd) {
-  std::vector<std::string> words = command;  // posix_spawnp() takes words that are not const
-  std::vector<char*> argv;
-  for (auto& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  // A socket instead of a pipe, because send() can be told not to raise SIGPIPE.
-  std::array<int, 2> stream{}, errors{};
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, stream.data()) != 0)
-    throw UserError(fmt::format("{}: {}", purpose, std::strerror(errno)));
-  if (::pipe2(errors.data(), O_CLOEXEC) != 0) {
-    const int reason = errno;
-    ::close(stream[0]);
-    ::close(stream[1]);
-    throw UserError(fmt::format("{}: {}", purpose, std::strerror(reason)));
-  }
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  const bool input = data == Stream::kInput;
-  if (stdin_fd >= 0)
-    posix_spawn_file_actions_adddup2(&actions, stdin_fd, 0);
-  else
-    posix_spawn_file_actions_addopen(&actions, input ? 1 : 0, "/dev/null", O_RDWR, 0);
-  posix_spawn_file_actions_adddup2(&actions, stream[1], input ? 0 : 1);
-  posix_spawn_file_actions_adddup2(&actions, errors[1], 2);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t defaults, mask;
-  sigemptyset(&mask);
-  sigemptyset(&defaults);
-  for (const int signal : {SIGPIPE, SIGXFSZ, SIGINT, SIGTERM}) sigaddset(&defaults, signal);
-  posix_spawnattr_setsigdefault(&attributes, &defaults);
-  posix_spawnattr_setsigmask(&attributes, &mask);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes,
-                           POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
-  const int result = ::posix_spawnp(&pid_, argv[0], &actions, &attributes, argv.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  ::close(stream[1]);
-  ::close(errors[1]);
-  data_ = stream[0];
-  error_ = errors[0];
-  if (result != 0) {
-    pid_ = -1;
-    close_fd(data_);
-    close_fd(error_);
-    throw UserError(fmt::format(
-        "{}: the program '{}' {}", purpose, one_line(command[0]),
-        result == ENOENT ? "was not found; install it (package ffmpeg), or use PNG pictures"
-                         : std::string("cannot be started: ") + std::strerror(result)));
-  }
-  // Messages are read while data are transferred; neither stream may block because of the other.
-  ::fcntl(error_, F_SETFL, O_NONBLOCK);
-}
-
-ChildProcess::~ChildProcess() {
-  if (pid_ > 0) {
-    kill();
-    finish();
-  }
-}
-
-void ChildProcess::kill() {
-  // The child leads a process group of its own: kill everything that it has started, too.
-  if (pid_ > 0) ::kill(-pid_, SIGKILL);
-}
-
-void ChildProcess::read_messages() {
-  std::array<char, 1024> chunk{};
-  while (error_ >= 0) {
-    const ssize_t n = ::read(error_, chunk.data(), chunk.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0 && errno == EAGAIN) return;
-    if (n <= 0) {
-      close_fd(error_);
-      return;
-    }
-    const std::size_t room = kMaxMessageBytes - std::min(kMaxMessageBytes, messages_.size());
-    messages_.append(chunk.data(), std::min(room, static_cast<std::size_t>(n)));
-  }
-}
-
-bool ChildProcess::read_some(std::string& buffer, const std::atomic<bool>* stop) {
-  std::array<char, 64 * 1024> chunk;
-  for (;;) {
-    check_stop(stop);
-    std::array<pollfd, 2> fds{{{data_, POLLIN, 0}, {error_, POLLIN, 0}}};
-    const int ready = ::poll(fds.data(), fds.size(), stop ? kPollMs : -1);
-    if (ready < 0 && errno != EINTR) return false;
-    if (ready <= 0) continue;
-    if (fds[1].revents != 0) read_messages();
-    if (fds[0].revents == 0) continue;
-    const ssize_t n = ::recv(data_, chunk.data(), chunk.size(), 0);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    buffer.append(chunk.data(), static_cast<std::size_t>(n));
-    return true;
-  }
-}
-
-bool ChildProcess::write_all(const std::uint8_t* bytes, std::size_t size) {
-  while (size > 0) {
-    std::array<pollfd, 2> fds{{{data_, POLLOUT, 0}, {error_, POLLIN, 0}}};
-    if (::poll(fds.data(), fds.size(), -1) < 0 && errno != EINTR) return false;
-    if (fds[1].revents != 0) read_messages();
-    if (fds[0].revents == 0) continue;
-    const ssize_t n = ::send(data_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-    if (n < 0) return false;
-    bytes += n;
-    size -= static_cast<std::size_t>(n);
-  }
-  return true;
-}
-
-int ChildProcess::finish(const std::atomic<bool>* stop) {
-  close_fd(data_);
-  // Read until the child closes its standard error, so that it never blocks on a message.
-  while (error_ >= 0) {
-    check_stop(stop);
-    pollfd fd{error_, POLLIN, 0};
-    if (::poll(&fd, 1, stop ? kPollMs : -1) < 0 && errno != EINTR) break;
-    read_messages();
-  }
-  int status = 0;
-  while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-  }
-  pid_ = -1;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
 
 /// Options that scale frames of this size down to the largest allowed one and keep the aspect
 /// ratio.
@@ -320,12 +174,13 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
                                     const DecodeOptions& options) {
   Descriptor footage(open_footage(file));
   ChildProcess child(decode_command(options), ChildProcess::Stream::kOutput,
-                     fmt::format("cannot read the footage '{}'", one_line(file.string())), footage.get());
+                     fmt::format("cannot read the footage '{}'", one_line(file.string())), {.stop = options.stop},
+                     footage.get());
   footage.close();
   std::vector<RgbImage> frames;
   std::string buffer;
   try {
-    while (child.read_some(buffer, options.stop))
+    while (child.read_some(buffer))
       while (auto frame = take_frame(buffer)) {
         if (options.most_width != 0 &&
             (frame->width > options.most_width || frame->height > options.most_height))
@@ -334,10 +189,12 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
       }
   } catch (const Stopped&) {
     throw;
+  } catch (const UserError&) {
+    throw;
   } catch (const std::runtime_error& e) {
     refuse_footage(file, e.what());
   }
-  const int status = child.finish(options.stop);
+  const int status = child.finish();
   check_decoded(file, status, child.messages(), !buffer.empty());
   if (frames.empty()) refuse_footage(file, "it has no frames");
   for (const auto& f : frames)
@@ -346,24 +203,25 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
   return frames;
 }
 
-FilmInfo film_info(const std::filesystem::path& file, const std::string& program) {
+FilmInfo film_info(const std::filesystem::path& file, const Patience& patience, const std::string& program) {
   FilmInfo out;
   std::string text;
   Descriptor film(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (film.get() < 0) return out;
+  std::optional<ChildProcess> child;
   try {
-    ChildProcess child({program, "-v", "error", "-protocol_whitelist", "file,pipe",
-                        "-format_whitelist", kFormats, "-select_streams", "v:0", "-show_entries",
-                        "stream=width,height,sample_aspect_ratio,avg_frame_rate", "-of",
-                        "default=noprint_wrappers=1", "-i", kFootage},
-                       ChildProcess::Stream::kOutput, "cannot ask ffprobe", film.get());
-    while (text.size() < kMaxMessageBytes && child.read_some(text, nullptr)) {
-    }
-    child.kill();
-    child.finish();
+    child.emplace(std::vector<std::string>{program, "-v", "error", "-protocol_whitelist", "file,pipe",
+                                           "-format_whitelist", kFormats, "-select_streams", "v:0", "-show_entries",
+                                           "stream=width,height,sample_aspect_ratio,avg_frame_rate", "-of",
+                                           "default=noprint_wrappers=1", "-i", kFootage},
+                  ChildProcess::Stream::kOutput, fmt::format("cannot ask about '{}'", one_line(file.string())),
+                  patience, film.get());
   } catch (const UserError&) {
-    return out;  // decoding the video will report the error
+    return out;  // decoding the video will report that there is no ffmpeg
   }
+  while (text.size() < kMaxMessageBytes && child->read_some(text)) {
+  }
+  child.reset();  // what it says beyond is not needed
   const auto pair = [&](std::string_view key, char separator, std::uint64_t& a, std::uint64_t& b) {
     const std::size_t at = text.find(key);
     if (at == std::string::npos) return false;
@@ -398,7 +256,7 @@ RgbImage load_still(const std::filesystem::path& file, const std::atomic<bool>* 
 }
 
 Mp4Writer::Mp4Writer(std::filesystem::path file, unsigned width, unsigned height, Frequency rate,
-                     PixelShape pixel, const std::string& program)
+                     PixelShape pixel, const Patience& patience, const std::string& program)
     : file_(std::move(file)),
       width_(width),
       height_(height),
@@ -419,7 +277,7 @@ Mp4Writer::Mp4Writer(std::filesystem::path file, unsigned width, unsigned height
               "-bitexact",    "-f",
               "mp4",          "file:" + file_.string()},
              ChildProcess::Stream::kInput,
-             fmt::format("cannot write '{}'", one_line(file_.string()))) {}
+             fmt::format("cannot write '{}'", one_line(file_.string())), patience) {}
 
 void Mp4Writer::write(const RgbImage& image) {
   FOVEA_CHECK(image.width == width_ && image.height == height_, "a film's frames are of one size");

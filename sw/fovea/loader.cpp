@@ -95,7 +95,7 @@ std::unique_ptr<video::StampedSource> camera_source(const board::BoardParams& pa
   std::vector<RgbImage> footage = load_footage(params, *setup.scene, stop);
   if (notes) {
     const FilmInfo info =
-        setup.scene->kind.is("video") ? film_info(setup.scene->file()) : FilmInfo{};
+        setup.scene->kind.is("video") ? film_info(setup.scene->file(), {.stop = stop}) : FilmInfo{};
     for (const std::string& note : footage_notes(params, *setup.scene, footage, info))
       notes->push_back(params.camera_count() > 1 ? fmt::format("camera {}: {}", camera, note)
                                                  : note);

@@ -125,10 +125,6 @@ std::vector<std::uint8_t> encode_png(const RgbImage& image, int level, PixelShap
   return {data, data + size};
 }
 
-void write_png(const std::filesystem::path& file, const RgbImage& image, int level) {
-  write_file(file, encode_png(image, level));
-}
-
 FrameWriter::FrameWriter(FrameWriterOptions options) : options_(std::move(options)) {
   FOVEA_CHECK(options_.queue_frames > 0, "the queue holds at least one frame");
   thread_ = std::thread([this] { run(); });
@@ -163,7 +159,23 @@ void FrameWriter::stop() {
 void FrameWriter::close() {
   stop();
   if (error_) std::rethrow_exception(error_);
-  if (mp4_) mp4_->close();
+  if (!mp4_) return;
+  try {
+    mp4_->close();
+  } catch (const UserError& e) {
+    lose_video(e.what());
+  } catch (const Stopped&) {
+    lose_video("");
+  }
+}
+
+void FrameWriter::lose_video(const std::string& why) {
+  mp4_.reset();
+  lost_video_ = why.empty() ? fmt::format("cannot write '{}': its encoder hung when the run was stopped",
+                                          one_line(options_.mp4.string()))
+                            : why;
+  std::error_code ignored;
+  std::filesystem::remove(options_.mp4, ignored);
 }
 
 void FrameWriter::run() {
@@ -191,14 +203,24 @@ void FrameWriter::encode(const Job& job) {
   const RgbImage image = uyvy_to_rgb(job.width, job.height, job.uyvy);
   if (!options_.folder.empty()) {
     const auto file = options_.folder / file_name(job.index);
-    auto out = options_.folder_fd < 0 ? CheckedFile(file) : CheckedFile(file, options_.folder_fd);
+    auto out = options_.folder_fd < 0 ? CheckedFile(file, CheckedFile::New{}) : CheckedFile(file, options_.folder_fd);
     out.write(encode_png(image, options_.png_level, job.pixel));
     out.close();
   }
-  if (options_.mp4.empty()) return;
-  if (!mp4_)
-    mp4_ = std::make_unique<Mp4Writer>(options_.mp4, image.width, image.height, options_.mp4_rate, job.pixel);
-  mp4_->write(image);
+  if (!options_.mp4.empty() && lost_video_.empty()) encode_video(image, job.pixel);
+}
+
+void FrameWriter::encode_video(const RgbImage& image, PixelShape pixel) {
+  try {
+    if (!mp4_)
+      mp4_ = std::make_unique<Mp4Writer>(options_.mp4, image.width, image.height, options_.mp4_rate, pixel,
+                                         options_.patience);
+    mp4_->write(image);
+  } catch (const UserError& e) {
+    lose_video(e.what());
+  } catch (const Stopped&) {
+    lose_video("");
+  }
 }
 
 }  // namespace fovea::app

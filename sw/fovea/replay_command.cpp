@@ -19,6 +19,7 @@
 #include "sw/fovea/replay_clocks.h"
 #include "sw/fovea/replay_path.h"
 #include "sw/fovea/run_dir.h"
+#include "sw/fovea/side_output.h"
 #include "sw/fovea/run_until.h"
 #include "sw/fovea/warnings.h"
 
@@ -173,7 +174,8 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   }
   const bool complete = replay_to_end(path, trace.info->start, context);
   path.finish();
-  if (commands) commands->finish();
+  std::vector<std::string> lost;
+  if (commands) side_output(lost, "--command-trace", [&] { commands->finish(); });
   if (!options.sets.empty() && path.waited_in_ram())
     Diagnostics::instance().configuration(fmt::format(
         "bursts of the EDMA waited {} core clocks in internal RAM for the core: as in the recorded run, which a run "
@@ -198,7 +200,8 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   say_note(dir.commit(complete), context);
   context.out << replay_words(stats, host, slowest);
   context.out << fmt::format("results in {}\n", dir.folder().string()) << std::flush;
-  if (complete) return kExitDone;
+  for (const std::string& why : lost) say_note(why + "; the other results are there", context);
+  if (complete) return lost.empty() ? kExitDone : kExitWrongInput;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << "fovea: stopped before the end; the figures cover what was replayed\n";
   return signal ? 128 + signal : kExitGuestFailed;

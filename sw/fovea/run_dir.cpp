@@ -1,15 +1,6 @@
 #include "sw/fovea/run_dir.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 
 #include "model/common/check.h"
 
@@ -24,37 +15,6 @@ std::string in_quotes(const fs::path& path) { return "'" + one_line(path.string(
   throw UserError(fmt::format("output folder {}: {}", in_quotes(path), why));
 }
 
-fs::path with_suffix(const fs::path& path, std::string_view suffix) {
-  fs::path out = path;
-  out += suffix;
-  return out;
-}
-
-/// Folders to be removed when the program ends without destructors, at a broken invariant
-/// (FOVEA_CHECK).
-std::vector<fs::path>& abandoned_at_exit() {
-  static std::vector<fs::path> folders;
-  [[maybe_unused]] static const int registered = std::at_quick_exit([] {
-    for (const fs::path& folder : abandoned_at_exit()) remove_run_files(folder);
-  });
-  return folders;
-}
-
-mode_t umask_now() {
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  return mask;
-}
-
-/// fsync() fails with EINVAL on file systems that do not support it.
-void sync_to_disk(const fs::path& path) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-  if (fd < 0) fail(path, std::strerror(errno));
-  const int error = ::fsync(fd) == 0 ? 0 : errno;
-  ::close(fd);
-  if (error != 0 && error != EINVAL && error != EROFS) fail(path, std::strerror(error));
-}
-
 }  // namespace
 
 RunDir::RunDir(const fs::path& dir, std::string_view command) : command_(command) {
@@ -66,23 +26,18 @@ RunDir::RunDir(const fs::path& dir, std::string_view command) : command_(command
   if (error) fail(dir, error.message());
   if (!final_.has_filename()) final_ = final_.parent_path();
   if (!final_.has_filename()) fail(dir, "a name is needed");
-  working_ = with_suffix(final_, ".tmp");
 
   const std::string why = obstacle(inspect_run_folder(final_));
   if (!why.empty()) fail(dir, why + "; choose another name, or move it away");
   fs::create_directories(final_.parent_path(), error);
   if (error) fail(dir, error.message());
-  try {
-    take_working();
-  } catch (...) {
-    abandon();
-    throw;
-  }
+  files_.emplace(final_, kRunKind);
 }
 
 std::string RunDir::obstacle(const RunFolder& found) const {
   if (!found.exists || found.vacant) return "";
   if (!found.ours) return "it exists and is not the folder of a Fovea run";
+  if (found.other_users) return "it belongs to another user";
   if (!found.foreign.empty())
     return fmt::format("it holds {}, which is not a file of a Fovea run", in_quotes(found.foreign));
   if (!found.command.empty() && found.command != command_)
@@ -90,104 +45,30 @@ std::string RunDir::obstacle(const RunFolder& found) const {
   return "";
 }
 
-void RunDir::take_working() {
-  const bool made = ::mkdir(working_.c_str(), 0700) == 0;
-  if (!made && errno != EEXIST) fail(working_, std::strerror(errno));
-  lock_ = ::open(working_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  if (lock_ < 0) fail(working_, std::strerror(errno));
-  struct stat mine {};
-  struct stat there {};
-  if (::fstat(lock_, &mine) != 0) fail(working_, std::strerror(errno));
-  if (mine.st_uid != ::geteuid())
-    fail(working_, "it belongs to another user; choose another name or remove it");
-  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) fail(working_, "another run is writing it");
-  // The run that used it may just have renamed it to DIR.
-  if (::lstat(working_.c_str(), &there) != 0 || there.st_ino != mine.st_ino ||
-      there.st_dev != mine.st_dev)
-    fail(working_, "another run is writing it");
-  const RunFolder found = inspect_run_folder(working_);
-  if (!found.vacant && !found.ours)
-    fail(working_, "it exists and is not left by a Fovea run; remove it or choose another name");
-  if (!found.foreign.empty())
-    fail(working_, fmt::format("it holds {}, which is not a file of a Fovea run; move it away",
-                               in_quotes(found.foreign)));
-  // Only the owner may enter, so that nobody can place links in the folder while the run writes.
-  mode_ = (0777 & ~umask_now()) | (mine.st_mode & S_ISGID);
-  if (!made && ::fchmod(lock_, 0700) != 0) fail(working_, std::strerror(errno));
-  set_remove(true);
-  if (!remove_run_files(working_, true))
-    fail(working_, "what an earlier run left cannot be removed");
-}
-
-RunDir::~RunDir() { abandon(); }
-
-void RunDir::set_remove(bool remove) {
-  remove_ = remove;
-  auto& folders = abandoned_at_exit();
-  std::erase(folders, working_);
-  if (remove) folders.push_back(working_);
-}
-
-/// Removes the folder while it is locked, so that no other run can have started in it.
-void RunDir::abandon() {
-  if (remove_) {
-    set_remove(false);
-    remove_run_files(working_);
-  }
-  for (const int fd : folders_) ::close(fd);
-  folders_.clear();
-  if (lock_ >= 0) ::close(lock_);
-  lock_ = -1;
-}
-
 fs::path RunDir::file(std::string_view name) const {
   FOVEA_CHECK(is_run_file(name), "run_files.cpp does not list the file " + std::string(name));
-  return working_ / name;
+  return files_->working() / name;
 }
 
 bool RunDir::covers(const fs::path& name) const {
   std::error_code error;
   const fs::path folder = fs::weakly_canonical(fs::absolute(name), error).parent_path();
-  return !error && (folder == final_ || folder == working_);
+  return !error && (folder == final_ || folder == files_->working());
 }
 
 std::unique_ptr<CheckedFile> RunDir::create(std::string_view name) {
-  const fs::path path = file(name);
-  return std::make_unique<CheckedFile>(path, lock_);
+  return files_->create(file(name).filename().string());
 }
 
 void RunDir::write(std::string_view name, std::string_view text) {
-  ::unlinkat(lock_, std::string(name).c_str(), 0);
-  const auto out = create(name);
-  out->write(text);
-  out->close();
+  files_->write(file(name).filename().string(), text);
 }
 
-int RunDir::make_folder(std::string_view name) {
-  const std::string text(name);
-  if (::mkdirat(lock_, text.c_str(), 0777) != 0) fail(working_ / text, std::strerror(errno));
-  const int fd = ::openat(lock_, text.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  if (fd < 0) fail(working_ / text, std::strerror(errno));
-  return folders_.emplace_back(fd);
-}
-
-/// Without this, files could be empty after a power failure.
-void RunDir::sync() const {
-  for (const auto& entry : fs::recursive_directory_iterator(working_))
-    if (!entry.is_symlink() && (entry.is_regular_file() || entry.is_directory()))
-      sync_to_disk(entry.path());
-  sync_to_disk(working_);
-}
+int RunDir::make_folder(std::string_view name) { return files_->make_folder(name); }
 
 std::string RunDir::commit(bool complete) {
   FOVEA_CHECK(!committed_, "run folder committed twice");
-  set_remove(false);
-  try {
-    sync();
-  } catch (const fs::filesystem_error& e) {
-    fail(working_, e.code().message());
-  }
-  if (::fchmod(lock_, mode_) != 0) fail(working_, std::strerror(errno));
+  files_->complete();
   const RunFolder old = inspect_run_folder(final_);
   std::string note;
   if (const std::string why = obstacle(old); !why.empty()) {
@@ -205,43 +86,14 @@ std::string RunDir::commit(bool complete) {
     placed_ = final_;
   }
   committed_ = true;
-  sync_to_disk(final_.parent_path());
   return note;
 }
 
 /// Renames DIR.tmp to `target`, which may exist. At any time one of the two results exists. @return
 /// what to add to the note about earlier results
 std::string RunDir::replace(const fs::path& target) {
-  std::error_code error;
-  if (!fs::exists(fs::symlink_status(target, error))) {
-    if (::rename(working_.c_str(), target.c_str()) != 0)
-      fail(target,
-           fmt::format("{}; the results are in {}", std::strerror(errno), in_quotes(working_)));
-    return "";
-  }
-  // The old folder is locked too, so that no other run takes it for an abandoned DIR.tmp.
-  const int old = ::open(target.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  if (old >= 0) {
-    ::flock(old, LOCK_EX | LOCK_NB);
-    folders_.push_back(old);
-  }
-  fs::path aside = working_;
-  if (::renameat2(AT_FDCWD, working_.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0) {
-    // File systems that cannot exchange names: the old result is renamed first.
-    aside = with_suffix(target, ".old");
-    for (int n = 2; fs::exists(fs::symlink_status(aside, error)); ++n)
-      aside = with_suffix(target, fmt::format(".old.{}", n));
-    if (::rename(target.c_str(), aside.c_str()) != 0)
-      fail(target,
-           fmt::format("{}; the results are in {}", std::strerror(errno), in_quotes(working_)));
-    if (::rename(working_.c_str(), target.c_str()) != 0) {
-      const int reason = errno;
-      ::rename(aside.c_str(), target.c_str());
-      fail(target,
-           fmt::format("{}; the results are in {}", std::strerror(reason), in_quotes(working_)));
-    }
-  }
-  if (remove_run_files(aside)) return "";
+  const fs::path aside = files_->place(target);
+  if (aside.empty() || remove_folder(aside, kRunKind)) return "";
   return fmt::format("; what could not be removed of it is in {}", in_quotes(aside));
 }
 

@@ -1,14 +1,12 @@
 // The folder of results of a command: complete under its name, or unfinished under NAME.tmp.
 #pragma once
-#include <sys/types.h>
-
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/output_folder.h"
 #include "sw/fovea/run_files.h"
 
 namespace fovea::app {
@@ -17,7 +15,7 @@ namespace fovea::app {
 /// result. The following is never lost:
 /// - Files that Fovea does not write are never removed: a folder with such files is refused, before
 ///   the run and again after it.
-/// - Results of one command are not replaced by those of another.
+/// - Results of one command are not replaced by those of another, nor those of one user by another's.
 /// - Complete results are replaced only by complete ones; partial ones go to `DIR.partial`.
 /// Without commit() (an error, a broken invariant), `DIR.tmp` is removed and `DIR` stays unchanged.
 /// After a crash, `DIR.tmp` remains until the next run into `DIR`.
@@ -28,15 +26,12 @@ class RunDir {
   /// host.json names first. @throws UserError: not writable, not Fovea's, or another run is writing
   /// it now
   RunDir(const std::filesystem::path& dir, std::string_view command);
-  ~RunDir();
-  RunDir(const RunDir&) = delete;
-  RunDir& operator=(const RunDir&) = delete;
 
   /// Full name of a file of the run; valid until commit(). Names that is_run_file() does not know
   /// are a defect.
   std::filesystem::path file(std::string_view name) const;
   /// The folder of the files now: DIR.tmp, after commit() DIR or DIR.partial.
-  const std::filesystem::path& folder() const { return committed_ ? placed_ : working_; }
+  const std::filesystem::path& folder() const { return committed_ ? placed_ : files_->working(); }
   /// True if a file of this name would be in the folder.
   bool covers(const std::filesystem::path& name) const;
   /// Writes or replaces a file of the run. @throws UserError
@@ -52,22 +47,15 @@ class RunDir {
   std::string commit(bool complete);
 
  private:
-  void take_working();
-  void abandon();
-  void set_remove(bool remove);
   /// Why an existing folder cannot be replaced by results of this command; empty if it can.
   std::string obstacle(const RunFolder& found) const;
-  void sync() const;
   std::string replace(const std::filesystem::path& target);
   std::filesystem::path put_beside(std::string_view suffix);
 
-  std::filesystem::path final_, working_, placed_;
+  std::filesystem::path final_, placed_;
   std::string command_;
-  mode_t mode_ = 0;  ///< of the complete folder
-  int lock_ = -1;
-  std::vector<int> folders_;
+  std::optional<OutputFolder> files_;
   bool committed_ = false;
-  bool remove_ = false;  ///< DIR.tmp is ours, and its contents are not needed
 };
 
 }  // namespace fovea::app

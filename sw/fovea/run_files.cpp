@@ -32,38 +32,7 @@ struct Series {
   std::string_view folder, prefix, suffix;
 };
 constexpr std::array<Series, 2> kSeries = {{{"frames", "frame_", ".png"}, {"camera", "frame_", ".png"}}};
-
-bool is_series_folder(std::string_view name) {
-  return std::any_of(kSeries.begin(), kSeries.end(),
-                     [&](const Series& s) { return s.folder == name; });
-}
-
-/// Calls `f(relative name, entry, is a folder of numbered files)` for everything in `dir` and in
-/// its folders of numbered files, sorted by name.
-template <class F>
-void each_entry(const fs::path& dir, const F& f) {
-  const auto sorted = [](const fs::path& folder) {
-    std::error_code ignored;
-    std::vector<fs::path> names;
-    for (fs::directory_iterator i(folder, ignored), end; !ignored && i != end; i.increment(ignored))
-      names.push_back(i->path().filename());
-    std::sort(names.begin(), names.end());
-    return names;
-  };
-  std::error_code ignored;
-  for (const fs::path& name : sorted(dir)) {
-    const bool series = is_series_folder(name.string()) &&
-                        fs::symlink_status(dir / name, ignored).type() == fs::file_type::directory;
-    if (series)
-      for (const fs::path& inner : sorted(dir / name)) f(name / inner, false);
-    f(name, series);
-  }
-}
-
-bool is_regular(const fs::path& file) {
-  std::error_code ignored;
-  return fs::symlink_status(file, ignored).type() == fs::file_type::regular;
-}
+constexpr std::array<std::string_view, kSeries.size()> kFolders = {kSeries[0].folder, kSeries[1].folder};
 
 /// Reads a JSON file; returns a discarded value if it cannot be read or is not JSON.
 json read_json(const fs::path& file, std::size_t max_bytes) {
@@ -100,29 +69,35 @@ bool is_run_file(std::string_view name) {
   });
 }
 
-bool is_run_folder(const fs::path& dir) {
-  const json config = read_json(dir / "config.json", kMaxConfigBytes);
+namespace {
+bool is_run_config(const json& config) {
   return config.is_object() && config.contains("format") && config["format"] == kRunFormat;
 }
+
+/// A run that dies while it writes config.json leaves one that is cut off, and no JSON.
+bool is_foreign_config(const fs::path& file) {
+  const json config = read_json(file, kMaxConfigBytes);
+  return !config.is_discarded() && !is_run_config(config);
+}
+}  // namespace
+
+const FolderKind kRunKind = {.owner = "a Fovea run",
+                             .is_file = is_run_file,
+                             .folders = kFolders,
+                             .mark = "config.json",
+                             .is_foreign_mark = is_foreign_config};
+
+bool is_run_folder(const fs::path& dir) { return is_run_config(read_json(dir / "config.json", kMaxConfigBytes)); }
 
 std::string RunFolder::results() const {
   return (complete ? "the results of " : "the partial results of ") + date;
 }
 
 RunFolder inspect_run_folder(const fs::path& dir) {
-  RunFolder found;
+  RunFolder found{folder_contents(dir, kRunKind), {}, {}, {}, {}};
+  if (!found.folder) return found;
   std::error_code error;
-  const fs::file_status status = fs::symlink_status(dir, error);
-  found.exists = fs::exists(status);
-  if (status.type() != fs::file_type::directory) return found;
   found.ours = is_run_folder(dir);
-  found.vacant = true;
-  each_entry(dir, [&](const fs::path& name, bool series) {
-    if (series) return;
-    found.vacant = false;
-    if (found.foreign.empty() && !(is_run_file(name.string()) && is_regular(dir / name)))
-      found.foreign = name.string();
-  });
   if (!found.ours) return found;
   const json host = read_json(dir / "host.json", kMaxConfigBytes);
   if (host.is_object() && host.contains("command") && host["command"].is_array() &&
@@ -138,18 +113,6 @@ RunFolder inspect_run_folder(const fs::path& dir) {
     found.date = local_date(dir / "config.json");
   }
   return found;
-}
-
-bool remove_run_files(const fs::path& dir, bool keep_folder) {
-  bool empty = true;
-  each_entry(dir, [&](const fs::path& name, bool series) {
-    std::error_code error;
-    const bool ours = series || (is_run_file(name.string()) && is_regular(dir / name));
-    // fs::remove() removes a folder only if it is empty.
-    if (!ours || !fs::remove(dir / name, error)) empty = false;
-  });
-  std::error_code error;
-  return empty && (keep_folder || fs::remove(dir, error));
 }
 
 }  // namespace fovea::app

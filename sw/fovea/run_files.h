@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "sw/fovea/output_folder.h"
+
 namespace fovea::app {
 
 /// The value of "format" in config.json of a run folder.
@@ -13,12 +15,12 @@ inline constexpr std::string_view kRunFormat = "fovea run 1";
 /// "frames/frame_000000.png"). RunDir writes no other files.
 bool is_run_file(std::string_view name);
 
+/// What a folder of results holds.
+extern const FolderKind kRunKind;
+
 /// An existing folder that may receive results.
-struct RunFolder {
-  bool exists = false;   ///< something of this name exists, of whatever type
+struct RunFolder : FolderContents {
   bool ours = false;     ///< a folder with a config.json written by Fovea
-  bool vacant = false;   ///< a folder without files, except in empty folders of Fovea's
-  std::string foreign;   ///< relative name of a file that Fovea does not write; empty: none
   std::string command;   ///< "run", "replay", "exec"; empty: unknown
   std::string date;      ///< local date and time of its results; empty if it has none
   bool complete = false; ///< it has results, and they are not marked as partial
@@ -30,11 +32,5 @@ RunFolder inspect_run_folder(const std::filesystem::path& dir);
 
 /// True if `dir` contains a config.json written by Fovea.
 bool is_run_folder(const std::filesystem::path& dir);
-
-/// Removes the files that Fovea writes, and then the folder (unless `keep_folder`), provided that
-/// nothing else is left in it. Other files are never removed. Errors of the file system are
-/// ignored: what cannot be removed stays.
-/// @return false if anything is left
-bool remove_run_files(const std::filesystem::path& dir, bool keep_folder = false);
 
 }  // namespace fovea::app

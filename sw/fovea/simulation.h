@@ -102,6 +102,7 @@ struct RunResult {
   std::string registers;  ///< the register log, if requested
   ProfileResult profile;  ///< with --profile
   std::string hazards;    ///< a sentence about the coherency hazards that were found; empty: none
+  std::vector<std::string> lost = {};  ///< why outputs beside the results could not be written, a sentence each
 };
 
 /// A board that can run once.

@@ -1,7 +1,10 @@
 // The commands compare, check, bless and trend as a user gives them: words, exit statuses, files.
 #include <sqlite3.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "sw/fovea/regression/compare.h"
 #include "sw/fovea/regression/trend.h"
@@ -189,7 +192,7 @@ TEST_F(RegressionCommandTest, BlessingMakesAReferenceThatIsMissingOrPoorer) {
   RunMaker plain = profiled();
   plain.profile.clear();
   EXPECT_EQ(cli({"bless", plain.write(dir, "plain").string(), "--against", base, "--why", "x"}), 0) << err.str();
-  EXPECT_THAT(out.str(), AllOf(HasSubstr("nothing to bless"), HasSubstr("reference in")));
+  EXPECT_THAT(out.str(), AllOf(HasSubstr("+reference_sha256: "), HasSubstr("reference in"), Not(HasSubstr("why"))));
   EXPECT_THAT(read_text(dir / "kept/profile.csv"), Not(HasSubstr("remap.c")));
   RunMaker placeless = profiled();
   placeless.functions.clear();
@@ -239,6 +242,167 @@ TEST_F(RegressionCommandTest, BlessingWritesNoReferenceIntoAnotherFolder) {
   EXPECT_THAT(err.str(), HasSubstr("would be the reference, but it holds something else"));
 }
 
+// SHA-256 of names, sizes and contents, by the program of the system and not by Fovea's.
+std::string hash_by_sha256sum(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  std::ofstream all(folder.string() + ".all", std::ios::binary);
+  for (const std::string& name : names) {
+    const std::string text = read_text(folder / name);
+    all << name << " " << text.size() << "\n" << text;
+  }
+  all.close();
+  const std::string command = "sha256sum '" + folder.string() + ".all'";
+  FILE* const pipe = ::popen(command.c_str(), "r");
+  std::string line(64, '\0');
+  EXPECT_EQ(::fread(line.data(), 1, line.size(), pipe), line.size());
+  ::pclose(pipe);
+  return line;
+}
+
+class BlessTogetherTest : public RegressionCommandTest {
+ protected:
+  /// The baselines of `a` and of `b`, each with its reference, and the runs that they are of.
+  BlessTogetherTest() {
+    EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "first"}), 0) << err.str();
+    old_text = read_text(base);
+    fs::copy(dir / "base", dir / "old");
+    EXPECT_EQ(cli({"bless", b, "--against", base, "--why", "second"}), 0) << err.str();
+    new_text = read_text(base);
+    fs::copy(dir / "base", dir / "new");
+  }
+  void state(const std::string& text, const char* in_place, const char* beside) {
+    for (const char* name : {"base", "base.tmp", "base.old"}) fs::remove_all(dir / name);
+    dir.write("base.yaml", text);
+    if (*in_place) fs::copy(dir / in_place, dir / "base");
+    if (*beside) fs::copy(dir / beside, dir / "base.tmp");
+  }
+  void expect_same(const char* x, const char* y) {
+    EXPECT_EQ(hash_by_sha256sum(dir / x), hash_by_sha256sum(dir / y)) << x << " is not " << y;
+  }
+  std::string old_text, new_text;
+};
+
+TEST_F(BlessTogetherTest, TheBaselineHasTheHashOfItsReference) {
+  EXPECT_THAT(new_text, HasSubstr("\nreference: base\nreference_sha256: " + hash_by_sha256sum(dir / "new") + "\n"));
+  EXPECT_THAT(old_text, HasSubstr("\nreference_sha256: " + hash_by_sha256sum(dir / "old") + "\n"));
+}
+
+// In every state in which a killed bless may leave the two, the baseline finds its own reference; the next bless has
+// both in their places, and leaves nothing beside them.
+TEST_F(BlessTogetherTest, WhatAKilledBlessLeftIsPutRight) {
+  struct State {
+    const std::string& text;
+    const char *in_place, *beside;
+  };
+  for (const auto& [text, in_place, beside] :
+       {State{old_text, "old", "new"}, {old_text, "new", "old"}, {old_text, "", "old"}, {new_text, "new", "old"}}) {
+    const bool is_old = text == old_text;
+    state(text, in_place, beside);
+    EXPECT_EQ(cli({"check", b, "--against", base}), is_old ? 1 : 0) << err.str();
+    if (is_old) EXPECT_THAT(out.str(), HasSubstr("blamed: remap (remap.c:21)"));
+    EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "again"}), 0) << err.str();
+    EXPECT_EQ(cli({"check", b, "--against", base}), 1) << err.str();
+    EXPECT_THAT(out.str(), HasSubstr("blamed: remap (remap.c:21)"));
+    expect_same("base", "old");
+    state(text, in_place, beside);
+    EXPECT_EQ(cli({"bless", b, "--against", base, "--why", "again"}), 0) << err.str();
+    expect_same("base", "new");
+    EXPECT_EQ(cli({"check", a, "--against", base}), 0) << err.str();
+    EXPECT_FALSE(fs::exists(dir / "base.tmp")) << "left beside";
+    EXPECT_FALSE(fs::exists(dir / "base.yaml.tmp"));
+  }
+}
+
+TEST_F(BlessTogetherTest, AReferenceOfAnotherBaselineIsNotBlamedWith) {
+  state(old_text, "new", "");
+  EXPECT_EQ(cli({"check", b, "--against", base}), 2);
+  EXPECT_THAT(err.str(), AllOf(HasSubstr("has other files than 'reference_sha256' says"), HasSubstr("fovea bless")));
+  state(old_text, "old", "");
+  dir.write("base/figures.csv", "");  // cut off
+  EXPECT_EQ(cli({"check", b, "--against", base}), 2);
+  EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "again"}), 0) << err.str();
+  EXPECT_EQ(cli({"check", b, "--against", base}), 1);
+  expect_same("base", "old");
+}
+
+// As people write it, and as earlier versions did.
+TEST_F(BlessTogetherTest, ABaselineWithoutAHashGetsOne) {
+  std::string bare = old_text;
+  const auto at = bare.find("reference_sha256");
+  bare.erase(at, bare.find('\n', at) + 1 - at);
+  bare.replace(bare.find("reference: base"), 15, "reference: base   # as before");
+  state(bare, "old", "");
+  EXPECT_EQ(cli({"check", b, "--against", base}), 1) << err.str();
+  EXPECT_EQ(cli({"bless", a, "--against", base, "--why", "x"}), 0);
+  EXPECT_EQ(read_text(base), bare) << "nothing changed, and nothing is written";
+  EXPECT_EQ(cli({"bless", b, "--against", base, "--why", "second"}), 0) << err.str();
+  EXPECT_THAT(read_text(base), HasSubstr("\nreference: base   # as before\nreference_sha256: " +
+                                         hash_by_sha256sum(dir / "new") + "\n"));
+  expect_same("base", "new");
+}
+
+TEST_F(BlessTogetherTest, NoLinkIsFollowedAndNoFolderElsewhereIsTaken) {
+  const auto bless = [&] { return cli({"bless", a, "--against", base, "--why", "x"}); };
+  dir.write("victim.txt", "mine\n");
+  fs::remove(dir / "base/figures.csv");
+  fs::create_symlink("../victim.txt", dir / "base/figures.csv");
+  EXPECT_EQ(bless(), 2);
+  EXPECT_THAT(err.str(), HasSubstr("'figures.csv' is no file of a reference"));
+  fs::remove_all(dir / "base");
+  fs::create_directory_symlink("old", dir / "base");
+  EXPECT_EQ(bless(), 2);
+  EXPECT_THAT(err.str(), HasSubstr("is no folder"));
+  expect_same("old", "old");
+  fs::remove(dir / "base");
+  EXPECT_EQ(read_text(dir / "victim.txt"), "mine\n");
+  for (const std::string name : {"../base", "/tmp/base", "..", ".", "a/b"}) {
+    std::string text = new_text;
+    text.replace(text.find("reference: base"), 15, "reference: " + name);
+    dir.write("base.yaml", text);
+    EXPECT_EQ(bless(), 2);
+    EXPECT_THAT(err.str(), HasSubstr("allowed: a name without '/'")) << name;
+  }
+  fs::remove(base);
+  dir.write("mine.yaml", new_text);
+  fs::create_symlink("mine.yaml", base);
+  EXPECT_EQ(bless(), 2);
+  EXPECT_THAT(err.str(), HasSubstr("symbolic link"));
+  EXPECT_EQ(read_text(dir / "mine.yaml"), new_text);
+  if (::geteuid() != 0) return;
+  fs::remove(base);
+  state(new_text, "new", "");
+  ASSERT_EQ(::chown((dir / "base").c_str(), 65534, 65534), 0);
+  EXPECT_EQ(bless(), 2);
+  EXPECT_THAT(err.str(), HasSubstr("belongs to another user"));
+}
+
+// The lock is held from reading to the last rename: every history entry of a bless that ended with 0 is there.
+TEST_F(BlessTogetherTest, OfManyAtOnceNoneIsLost) {
+  constexpr int kEach = 25;
+  std::atomic<int> done = 0;
+  std::vector<std::thread> people;
+  for (const std::string& run : {a, b, a, b})
+    people.emplace_back([&, run] {
+      for (int n = 0; n < kEach; ++n) {
+        std::ostringstream said, wrong;
+        const int status = app::run_cli({"bless", run, "--against", base, "--why", "many"},
+                                        {.out = said, .err = wrong, .make_simulation = nullptr});
+        if (status == 0 && said.str().find("+    why: \"many\"") != std::string::npos) ++done;
+        if (status != 0) EXPECT_THAT(wrong.str(), HasSubstr("another run is writing it"));
+      }
+    });
+  for (auto& p : people) p.join();
+  const std::string text = read_text(base);
+  int entries = 0;
+  for (auto at = text.find("\"many\""); at != text.npos; at = text.find("\"many\"", at + 1)) ++entries;
+  EXPECT_GT(done, 0);
+  EXPECT_EQ(entries, done);
+  EXPECT_THAT(text, HasSubstr("reference_sha256: " + hash_by_sha256sum(dir / "base") + "\n"));
+  EXPECT_FALSE(fs::exists(dir / "base.tmp"));
+}
+
 TEST_F(RegressionCommandTest, OtherFilesAreNotReplaced) {
   dir.write("notes.yaml", "my: notes\n");
   EXPECT_EQ(cli({"bless", a, "--against", (dir / "notes.yaml").string(), "--why", "x"}), 2);
@@ -255,6 +419,17 @@ TEST_F(RegressionCommandTest, OtherFilesAreNotReplaced) {
   sqlite3_close(db);
   EXPECT_EQ(cli({"trend", a, "--database", (dir / "foreign.db").string()}), 2);
   EXPECT_THAT(err.str(), HasSubstr("another program"));
+  EXPECT_EQ(cli({"trend", a, "--database", (dir / "own.db").string(), "--commit", "x"}), 0) << err.str();
+  const std::string own = read_text(dir / "own.db");
+  fs::create_symlink("own.db", dir / "link.db");
+  EXPECT_EQ(cli({"trend", b, "--database", (dir / "link.db").string(), "--commit", "y"}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("symbolic link"));
+  EXPECT_EQ(read_text(dir / "own.db"), own);
+  ASSERT_EQ(sqlite3_open((dir / "own.db").c_str(), &db), SQLITE_OK);
+  sqlite3_exec(db, "UPDATE runs SET units = '{\"cpu.cycles\": 1}'", nullptr, nullptr, nullptr);
+  sqlite3_close(db);
+  EXPECT_EQ(cli({"trend", "--database", (dir / "own.db").string(), "--plot", (dir / "t.svg").string()}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("the line of commit x cannot be read"));
 }
 
 }  // namespace

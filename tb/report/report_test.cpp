@@ -11,6 +11,7 @@
 #include "sw/fovea/report/page.h"
 #include "sw/fovea/report/pictures.h"
 #include "tb/report/folder.h"
+#include "tb/unit/png_file.h"
 
 namespace fovea::report {
 namespace {
@@ -439,9 +440,9 @@ TEST(PictureTest, BeforeAndAfterHaveTheSameNumber) {
   two_frames().write(dir);
   fs::create_directories(dir / "run/frames");
   fs::create_directories(dir / "run/camera");
-  app::write_png(dir / "run/frames/frame_000000.png", picture(8, 4, 1));
-  app::write_png(dir / "run/frames/frame_000003.png", picture(8, 4, 2));
-  app::write_png(dir / "run/camera/frame_000003.png", picture(16, 8, 3));
+  test::write_png(dir / "run/frames/frame_000000.png", picture(8, 4, 1));
+  test::write_png(dir / "run/frames/frame_000003.png", picture(8, 4, 2));
+  test::write_png(dir / "run/camera/frame_000003.png", picture(16, 8, 3));
   const auto chosen = choose_pictures({load_results(dir / "run", {})}, 1'000'000);
   EXPECT_EQ(chosen[0].frame, 3u);
   EXPECT_EQ(chosen[0].before->width, 16u);
@@ -473,8 +474,8 @@ TEST(PictureTest, AComposedViewIsShownWithAllItsCameras) {
   for (int n = 0; n < 5; ++n) {
     rows += fmt::format("{},{},{},,,,,{}.000,{}.000,0,0\n", n, n % 2, n, n, n + 1);
     const auto name = fmt::format("frame_{:06}.png", n);
-    app::write_png(dir / "run/frames" / name, picture(8, 4, static_cast<std::uint8_t>(n)));
-    if (n < 4) app::write_png(dir / "run/camera" / name, picture(16, 8, static_cast<std::uint8_t>(10 + n)));
+    test::write_png(dir / "run/frames" / name, picture(8, 4, static_cast<std::uint8_t>(n)));
+    if (n < 4) test::write_png(dir / "run/camera" / name, picture(16, 8, static_cast<std::uint8_t>(10 + n)));
   }
   dir.write("run/frames.csv", rows);
   const RunPictures chosen = with_view("birds_eye");
@@ -499,7 +500,7 @@ TEST(PictureTest, RunsAreComparedPixelByPixel) {
        {std::pair("one", 7), std::pair("two", 7), std::pair("three", 9)}) {
     two_frames().write(dir, name);
     fs::create_directories(dir / name / "frames");
-    app::write_png(dir / name / "frames/frame_000000.png",
+    test::write_png(dir / name / "frames/frame_000000.png",
                    picture(8, 4, static_cast<std::uint8_t>(value)));
   }
   const std::string page =
@@ -519,7 +520,7 @@ TEST(PictureTest, TheShareOfPixelsIsOfAll) {
   for (const auto& [name, shown] : {std::pair("one", picture(8, 4, 7)), std::pair("two", second)}) {
     two_frames().write(dir, name);
     fs::create_directories(dir / name / "frames");
-    app::write_png(dir / name / "frames/frame_000000.png", shown);
+    test::write_png(dir / name / "frames/frame_000000.png", shown);
   }
   EXPECT_THAT(report_page({load_results(dir / "one", {}), load_results(dir / "two", {})}),
               HasSubstr("8 of 32 pixels differ (25 %)"));
@@ -538,7 +539,7 @@ TEST(PictureTest, EightRunsOfNoiseStayBelowThreeMegabytes) {
     for (const char* folder : {"/frames", "/camera"}) {
       fs::create_directories(dir / (name + folder));
       if (i == 0)
-        app::write_png(dir / (name + folder + "/frame_000000.png"), noise);
+        test::write_png(dir / (name + folder + "/frame_000000.png"), noise);
       else
         fs::copy_file(dir / (std::string("A") + folder + "/frame_000000.png"),
                       dir / (name + folder + "/frame_000000.png"));
@@ -561,7 +562,7 @@ TEST(PictureTest, ShrinkingEndsAtAFewPixels) {
     const TempDir dir;
     two_frames().write(dir);
     fs::create_directories(dir / "run/frames");
-    app::write_png(dir / "run/frames/frame_000000.png", picture(width, height, 1));
+    test::write_png(dir / "run/frames/frame_000000.png", picture(width, height, 1));
     const auto chosen = choose_pictures({load_results(dir / "run", {})}, 1);
     ASSERT_TRUE(chosen[0].after);
     EXPECT_EQ(chosen[0].after->shrunk, shrunk) << width << " x " << height;

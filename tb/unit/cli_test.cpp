@@ -405,6 +405,70 @@ TEST_F(ProgramTest, SignalsEndTheRunWithAPartialResult) {
   }
 }
 
+/// A program in the place of ffmpeg.
+class FakeEncoder {
+ public:
+  FakeEncoder(const TempDir& dir, const std::string& body) : path_(std::getenv("PATH")) {
+    const auto program = dir.write("bin/ffmpeg", "#!/bin/sh\n" + body + "\n");
+    fs::permissions(program, fs::perms::owner_all);
+    ::setenv("PATH", (program.parent_path().string() + ":" + path_).c_str(), 1);
+  }
+  ~FakeEncoder() { ::setenv("PATH", path_.c_str(), 1); }
+
+ private:
+  std::string path_;
+};
+
+TEST_F(ProgramTest, AFilmThatFailsTakesNoResultsAlong) {
+  const FakeEncoder fake(dir, "echo 'no room' >&2; exit 1");
+  const fs::path result = dir / "r";
+  const auto ended =
+      start({"run", experiment, "-s", "run.frames=3", "-s", "run.mode=good", "--mp4", "-o", result.string()});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err,
+              AllOf(HasSubstr("display.mp4"), HasSubstr("no room"), HasSubstr("the other results are there")));
+  EXPECT_EQ(json::parse(read_text(result / "stats.json"))["complete"], true);
+  EXPECT_TRUE(fs::exists(result / "frames" / FrameWriter::file_name(2)));
+  EXPECT_FALSE(fs::exists(result / "display.mp4"));
+}
+
+TEST_F(ProgramTest, TheFirstSignalEndsARunWhoseEncoderHangs) {
+  const FakeEncoder fake(dir, "echo $$ > '" + (dir / "pid").string() + "'; exec sleep 1000");
+  const fs::path result = dir / "r";
+  const auto ended = start({"run", experiment, "--mp4", "-o", result.string()}, [&](pid_t pid) {
+    for (int i = 0; i < 500 && read_text(dir / "pid").empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    for (int i = 0; i < 2; ++i) {  // as timeout(1) does
+      ::kill(pid, SIGTERM);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  });
+  EXPECT_EQ(ended.status, 128 + SIGTERM) << ended.err;
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("display.mp4"), HasSubstr("hung")));
+  EXPECT_EQ(json::parse(read_text(result / "stats.json"))["complete"], false);
+  EXPECT_FALSE(fs::exists(dir / "r.tmp"));
+  EXPECT_EQ(::kill(std::stoi(read_text(dir / "pid")), 0), -1) << "the encoder is left";
+}
+
+TEST_F(ProgramTest, ASecondSignalEndsTheProgramAndItsEncoder) {
+  const FakeEncoder fake(dir, "echo $$ > '" + (dir / "pid").string() + "'; exec sleep 1000");
+  const auto begin = std::chrono::steady_clock::now();
+  const auto ended = start({"run", experiment, "--mp4", "-o", (dir / "r").string()}, [&](pid_t pid) {
+    for (int i = 0; i < 500 && read_text(dir / "pid").empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ::kill(pid, SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    ::kill(pid, SIGTERM);
+  });
+  EXPECT_EQ(ended.status, -SIGTERM) << ended.err;
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+  const std::string stat = "/proc/" + std::to_string(std::stoi(read_text(dir / "pid"))) + "/stat";
+  // A zombie until whoever inherits it looks.
+  const auto gone = [&] { return read_text(stat).empty() || read_text(stat).find(") Z ") != std::string::npos; };
+  for (int i = 0; i < 200 && !gone(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(gone()) << "the encoder is left";
+}
+
 TEST_F(ProgramTest, FullDiskIsOneLineAndStatusTwo) {
   // 200 bytes per file: config.json is the first that is longer.
   const auto ended = start({"run", experiment, "-o", (dir / "r").string()}, {}, 200);

@@ -90,7 +90,7 @@ class DiskTest : public testing::Test {
 };
 
 TEST_F(DiskTest, AnErrorOfCloseIsReported) {
-  CheckedFile file(dir / "f");
+  CheckedFile file(dir / "f", CheckedFile::New{});
   file.write("x");
   on_close = [](int) { return ENOSPC; };
   const std::string error = user_error([&] { file.close(); });

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "sw/fovea/checked_file.h"
 #include "sw/fovea/ffmpeg.h"
+#include "sw/fovea/output_file.h"
 #include "sw/fovea/simulation.h"
 
 namespace fovea::test {
@@ -23,8 +23,9 @@ class FakeBoard : public app::Simulation {
     if (params_.mode.is("guest_failure")) throw GuestFailure("PC 0x0 in nowhere");
     if (params_.mode.is("defect")) throw std::logic_error("broken");
     if (params_.mode.is("broken_check")) FOVEA_CHECK(false, "planted");
-    std::optional<app::CheckedFile> trace;
-    if (!request.bus_trace.empty()) trace.emplace(request.bus_trace);
+    std::optional<app::OutputFile> trace;
+    if (!request.bus_trace.empty())
+      trace.emplace(request.bus_trace, "--bus-trace", "a trace", [](std::string_view) { return true; });
     // derived from bad_alloc
     if (params_.mode.is("out_of_memory")) throw std::bad_array_new_length();
     if (params_.mode.is("no_thread"))
@@ -40,7 +41,7 @@ class FakeBoard : public app::Simulation {
     if (params_.mode.is("not_modelled")) Diagnostics::instance().not_modelled("field X of Y");
     if (trace) {
       trace->write("the trace\n");
-      trace->close();
+      trace->commit();
     }
     app::RunResult result;
     std::vector<app::FrameRow> late;

@@ -40,6 +40,7 @@ class LimitsTest : public ::testing::Test {
     return all;
   }
   Done limits(const std::string& arguments, const std::string& out = "L") {
+    for (const char* stream : {"out.txt", "err.txt"}) std::filesystem::remove(dir_ / stream);
     points::Child child(command(arguments, out), dir_ / "out.txt", dir_ / "err.txt");
     return wait(child);
   }
@@ -228,9 +229,9 @@ TEST_F(LimitsTest, AFailedPointIsAResultWithItsMessage) {
   EXPECT_THAT(points, HasSubstr(",4,unknown,"));
   const std::size_t first = runs();
   EXPECT_EQ(limits("--over toy.mode=good,guest_failure,user_error,defect").status, 4);
-  EXPECT_EQ(runs(), first);
+  EXPECT_EQ(runs(), first + 2) << "what may have been the host's fault runs again";
   limits("--over toy.mode=good,guest_failure,user_error,defect --retry-failed");
-  EXPECT_EQ(runs(), first + 3);
+  EXPECT_EQ(runs(), first + 5);
   EXPECT_EQ(limits("--find toy.value=0..9 -s toy.mode=guest_failure", "M").status, 1);
   EXPECT_EQ(limits("--find toy.value=0..9 -s toy.mode=user_error", "N").status, 2);
   EXPECT_EQ(limits("--binds frame.remap_time.mean -s toy.mode=guest_failure", "O").status, 3);

@@ -10,6 +10,7 @@
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/ffmpeg.h"
 #include "sw/fovea/png.h"
+#include "tb/unit/png_file.h"
 #include "tb/unit/support.h"
 
 namespace fovea::app {
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 using test::read_text;
 using test::TempDir;
 using test::user_error;
+using test::write_png;
 using testing::AllOf;
 using testing::AnyOf;
 using testing::HasSubstr;
@@ -361,7 +363,7 @@ TEST_F(FfmpegTest, AFilmTellsItsRateAndThePixelsShape) {
   EXPECT_NEAR(info.pixel_aspect, 16.0 / 15, 1e-9);
   EXPECT_EQ(info.width, 64u);
   EXPECT_EQ(info.height, 48u);
-  EXPECT_TRUE(film_info(dir / "f.mp4", "no-such-ffprobe").rate.stopped());
+  EXPECT_TRUE(film_info(dir / "f.mp4", {}, "no-such-ffprobe").rate.stopped());
   EXPECT_TRUE(film_info(dir.write("x.mp4", "x")).rate.stopped());
 }
 
@@ -470,6 +472,92 @@ TEST_F(FfmpegTest, AStopEndsTheDecodingAndLeavesNoProcess) {
     }
     EXPECT_TRUE(gone);
   }
+}
+
+class HangingTest : public FfmpegTest {
+ protected:
+  using Clock = std::chrono::steady_clock;
+  /// A program that neither reads, writes nor ends.
+  HangingTest() {
+    program = dir.write("hangs", "#!/bin/sh\nexec sleep 1000\n").string();
+    fs::permissions(program, fs::perms::owner_all);
+  }
+  /// How long `f` takes, in seconds.
+  template <class F>
+  static double seconds(const F& f) {
+    const auto begin = Clock::now();
+    f();
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+  /// Sets `stop` after a while.
+  std::thread signal() {
+    return std::thread([this] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      stop = true;
+    });
+  }
+  std::string program;
+  std::atomic<bool> stop{false};
+  const std::chrono::milliseconds soon{300};
+};
+
+TEST_F(HangingTest, EveryWaitEndsWithTheFirstSignal) {
+  std::thread killer = signal();
+  EXPECT_LT(seconds([&] { EXPECT_THROW(film_info(clip(1), {.stop = &stop}, program), Stopped); }), 20);
+  killer.join();
+  stop = false;
+  killer = signal();
+  Mp4Writer writer(dir / "f.mp4", 640, 480, {25}, {}, {.stop = &stop, .silence_after_stop = soon}, program);
+  const RgbImage image = pattern(640, 480);
+  EXPECT_LT(seconds([&] {
+              EXPECT_THROW(
+                  {
+                    for (int i = 0; i < 1000; ++i) writer.write(image);
+                  },
+                  Stopped);
+            }),
+            20);
+  killer.join();
+  EXPECT_LT(seconds([&] { EXPECT_THROW(writer.close(), Stopped); }), 20);
+}
+
+TEST_F(HangingTest, EveryWaitHasALimitOfTime) {
+  EXPECT_THAT(user_error([&] { film_info(clip(1), {.silence = soon}, program); }),
+              AllOf(HasSubstr("clip.mp4"), HasSubstr("has not gone on for")));
+  Mp4Writer writer(dir / "f.mp4", 640, 480, {25}, {}, {.silence = soon}, program);
+  const RgbImage image = pattern(640, 480);
+  EXPECT_THAT(user_error([&] {
+                for (int i = 0; i < 1000; ++i) writer.write(image);
+              }),
+              AllOf(HasSubstr("f.mp4"), HasSubstr("has not gone on for")));
+  EXPECT_THAT(user_error([&] { writer.close(); }), HasSubstr("has not gone on for"));
+}
+
+// An encoder that ends or hangs takes its film along, and nothing else.
+TEST_F(HangingTest, AFilmThatFailsLeavesThePictures) {
+  const std::string path = std::getenv("PATH");
+  for (const char* body : {"exec sleep 1000", "touch \"$0.film\"; echo full >&2; exit 1"}) {
+    fs::create_directories(dir / "bin");
+    fs::remove_all(dir / "frames");
+    fs::create_directory(dir / "frames");
+    dir.write("bin/ffmpeg", std::string("#!/bin/sh\n") + body + "\n");
+    fs::permissions(dir / "bin/ffmpeg", fs::perms::owner_all);
+    ::setenv("PATH", ((dir / "bin").string() + ":" + path).c_str(), 1);
+    FrameWriter writer({.folder = dir / "frames", .mp4 = dir.write("f.mp4", "begun"), .patience = {.silence = soon}});
+    for (std::uint64_t i = 0; i < 3; ++i) writer.push(i, 640, 480, grey_frame(640, 480, 100));
+    writer.close();
+    ::setenv("PATH", path.c_str(), 1);
+    EXPECT_THAT(writer.lost_video(), AllOf(HasSubstr("f.mp4"), AnyOf(HasSubstr("gone on"), HasSubstr("full"))));
+    EXPECT_FALSE(fs::exists(dir / "f.mp4")) << "a film that is cut off is none";
+    for (std::uint64_t i = 0; i < 3; ++i) EXPECT_EQ(read_png(dir / "frames" / FrameWriter::file_name(i)).width, 640u);
+  }
+}
+
+// The child has ended; what it has started keeps its streams open.
+TEST_F(HangingTest, AGrandchildThatKeepsTheStreamsIsNotWaitedFor) {
+  ChildProcess child({"/bin/sh", "-c", "echo said >&2; sleep 5 & exit 3"}, ChildProcess::Stream::kInput, "test", {});
+  EXPECT_LT(seconds([&] { EXPECT_EQ(child.finish(), 3); }), 4);
+  EXPECT_EQ(child.messages(), "said\n");
 }
 
 TEST_F(FfmpegTest, FilmThatCannotBeWrittenIsAnErrorNotASignal) {

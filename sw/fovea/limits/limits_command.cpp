@@ -129,16 +129,6 @@ fs::path own_program() {
   return fs::read_symlink("/proc/self/exe", error);
 }
 
-/// Replaces a file at once, so that an interruption leaves the old one or the new one.
-void replace_file(const fs::path& file, const std::string& text) {
-  fs::path part = file;
-  part += ".tmp";
-  app::write_file(part, text);
-  std::error_code error;
-  fs::rename(part, file, error);
-  if (error) throw UserError(fmt::format("'{}': {}", app::one_line(file.string()), error.message()));
-}
-
 /// A failure counts most; without one, a single answer is enough.
 int status_of(const std::vector<std::unique_ptr<Study>>& studies) {
   int worst = 0;
@@ -249,7 +239,7 @@ int command_limits(const LimitsOptions& o, const app::CliContext& context) {
   };
   for (const auto& study : studies) study->start();
   const bool complete = runner.run();
-  replace_file(dir / "points.csv", points_csv(runner.entries(), conditions));
+  store.write("points.csv", points_csv(runner.entries(), conditions));
   if (!complete) {
     context.err << fmt::format("fovea: stopped; {} finished, and the same command goes on\n",
                                runner.ran() + runner.reused() == 1 ? "1 point is"
@@ -257,10 +247,10 @@ int command_limits(const LimitsOptions& o, const app::CliContext& context) {
     const int signal = context.signal ? context.signal->load() : 0;
     return signal ? 128 + signal : app::kExitGuestFailed;
   }
-  replace_file(dir / "limits.csv", limits_csv(studies));
-  if (!question.binds.empty()) replace_file(dir / "binds.csv", binds_csv(studies));
+  store.write("limits.csv", limits_csv(studies));
+  if (!question.binds.empty()) store.write("binds.csv", binds_csv(studies));
   const std::string text = answers_text(studies, question, conditions);
-  replace_file(dir / "answer.txt", text);
+  store.write("answer.txt", text);
   context.out << text;
   context.out << fmt::format("{} runs made, {} taken from earlier ones; results in {}\n", runner.ran(),
                              runner.reused(), dir.string())

@@ -25,7 +25,7 @@ namespace {
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  const int flags = O_WRONLY | O_CREAT | O_TRUNC;
+  const int flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW;
   const int in = ::open("/dev/null", O_RDONLY);
   const int out = ::open(output, flags, 0666), err = ::open(messages, flags, 0666);
   if (in < 0 || out < 0 || err < 0 || ::dup2(in, STDIN_FILENO) < 0 ||

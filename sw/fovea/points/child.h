@@ -19,7 +19,8 @@ struct Ended {
 /// parent, which then ends its children itself; should the parent die, the kernel sends it SIGTERM.
 class Child {
  public:
-  /// Starts `arguments[0]`, with nothing on its standard input and the other streams in these files.
+  /// Starts `arguments[0]`, with nothing on its standard input and the other streams in these files,
+  /// which must not exist.
   /// @throws UserError if the host refuses; a program that cannot be executed ends with status 127
   Child(const std::vector<std::string>& arguments, const std::filesystem::path& output,
         const std::filesystem::path& messages);

@@ -1,13 +1,12 @@
 #include "sw/fovea/points/point.h"
 
 #include <fmt/format.h>
-#include <gcrypt.h>
 
-#include <array>
 #include <nlohmann/json.hpp>
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/sha256.h"
 
 namespace fovea::points {
 namespace {
@@ -20,12 +19,7 @@ std::string key_of(const Point& point) {
   std::string text = "fovea point 1\n" + point.command + "\n";
   for (const std::string& option : point.options) text += option + "\n";
   text += "\n" + point.identity;
-  [[maybe_unused]] static const char* const initialised = gcry_check_version(nullptr);
-  std::array<unsigned char, 32> digest{};
-  gcry_md_hash_buffer(GCRY_MD_SHA256, digest.data(), text.data(), text.size());
-  std::string out;
-  for (const unsigned char byte : digest) out += fmt::format("{:02x}", byte);
-  return out;
+  return app::sha256_of_text(text);
 }
 
 std::string folder_name(std::string_view key) { return std::string(key.substr(0, 16)); }

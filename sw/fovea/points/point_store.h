@@ -14,16 +14,20 @@ namespace fovea::points {
 /// `point.json` (key, command line, status, message), `messages.txt`, `output.txt` and the folder
 /// `run/` of the run. A point is written as `NAME.tmp` and renamed when it has ended, so a folder
 /// without the suffix is a whole result.
+///
+/// Whatever moment a process ends at, the next one goes on: what is unfinished is removed.
 class PointStore {
  public:
   /// Creates the folder or continues in it, and locks it against other processes.
-  /// @throws UserError: it is not writable, in use, or holds something else
+  /// @throws UserError: it is not writable, in use, of another user, or holds something else
   explicit PointStore(const std::filesystem::path& dir);
   ~PointStore();
   PointStore(const PointStore&) = delete;
   PointStore& operator=(const PointStore&) = delete;
 
   const std::filesystem::path& dir() const { return dir_; }
+  /// Puts a file with the answers to a question into the folder, in the place of an earlier one. @throws UserError
+  void write(std::string_view name, std::string_view text);
   std::filesystem::path folder(std::string_view key) const;
   /// The result of an earlier call, if there is one. @throws UserError if it cannot be read
   std::optional<PointResult> find(std::string_view key) const;
@@ -37,9 +41,11 @@ class PointStore {
   void forget(std::string_view key);
 
  private:
+  void open();
   std::filesystem::path working(std::string_view key) const;
   std::filesystem::path dir_;
-  int lock_ = -1;
+  int lock_ = -1;    ///< of the folder
+  int points_ = -1;  ///< of its `points`
 };
 
 }  // namespace fovea::points

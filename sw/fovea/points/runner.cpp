@@ -26,6 +26,10 @@ std::string replaced(std::string text, const std::filesystem::path& folder) {
   return text;
 }
 
+/// Whether a point that ended so would end so again: it has results, or its own program failed. Other statuses may be
+/// the host's fault: a full disk, an input that is repaired since, a Fovea that is.
+bool belongs_to_point(int status) { return status == 0 || status == 1 || status == 3; }
+
 std::string duration(double seconds) {
   const auto whole = static_cast<std::uint64_t>(std::ceil(seconds));
   if (whole < 60) return fmt::format("{} s", whole);
@@ -88,7 +92,7 @@ bool Runner::run() {
 /// Takes an earlier result, or starts the program.
 void Runner::start(Known& known) {
   if (auto earlier = store_.find(known.key)) {
-    if (earlier->status == 0 || !options_.retry_failed) {
+    if (earlier->status == 0 || (belongs_to_point(earlier->status) && !options_.retry_failed)) {
       known.result = std::make_unique<PointResult>(std::move(*earlier));
       ++reused_;
       ready_.push_back(&known);

@@ -19,7 +19,9 @@ namespace fovea::points {
 struct RunnerOptions {
   std::filesystem::path program;  ///< what runs a point; Fovea's own executable
   unsigned jobs = 1;              ///< processes at once
-  bool retry_failed = false;      ///< earlier results with a status other than 0 don't count
+  /// Earlier results with a status other than 0 don't count. Those with a status that is no property of the point,
+  /// such as 2 of a full disk, never do.
+  bool retry_failed = false;
   const std::atomic<bool>* stop = nullptr;  ///< set by Ctrl-C
   std::ostream* progress = nullptr;         ///< a line for each point that has ended
   /// How long a child may take to end after SIGTERM before it is killed.

@@ -37,7 +37,7 @@ class BaselineReader {
                        kBaselineFormat));
     known(root,
           {"format", "experiment", "program", "trace", "arguments", "options", "simulator", "settings", "reference",
-           "metrics", "history"},
+           "reference_sha256", "metrics", "history"},
           "the baseline");
     read_subject(root);
     const YAML::Node simulator = root["simulator"];
@@ -58,11 +58,7 @@ class BaselineReader {
         out_.settings[item.first.Scalar()] = item.second.Scalar();
       }
     }
-    if (const YAML::Node reference = root["reference"]; reference) {
-      if (!reference.IsScalar() || reference.Scalar().empty())
-        fail(reference.Mark().line, "'reference' is the name of a folder beside the baseline");
-      out_.reference = out_.file.parent_path() / reference.Scalar();
-    }
+    read_reference(root);
     check_history(root);
     read_metrics(root["metrics"], root);
     return std::move(out_);
@@ -81,6 +77,31 @@ class BaselineReader {
     if (!found) fail(root.Mark().line, "'experiment' is missing; of a result of exec 'program', of replay 'trace'");
     out_.subject.arguments = words(root, "arguments", out_.subject.kind == ResultKind::kExec);
     out_.subject.options = words(root, "options", out_.subject.kind != ResultKind::kRun);
+  }
+
+  void read_reference(const YAML::Node& root) {
+    const YAML::Node reference = root["reference"], hash = root["reference_sha256"];
+    if (!reference) {
+      if (hash) fail(hash.Mark().line, "'reference_sha256' without 'reference', whose hash it is");
+      return;
+    }
+    if (!reference.IsScalar() || reference.Scalar().empty() || reference.Scalar() == "." ||
+        reference.Scalar() == ".." || reference.Scalar().find('/') != std::string::npos)
+      fail(reference.Mark().line,
+           "'reference' is the name of a folder beside the baseline; allowed: a name without '/'");
+    out_.reference = out_.file.parent_path() / reference.Scalar();
+    const auto at = static_cast<std::size_t>(reference.Mark().pos);
+    out_.reference_line_at = std::min(out_.text.find('\n', at), out_.text.size());
+    for (const auto& item : root)
+      if (item.first.Scalar() == "reference")
+        out_.reference_indent = static_cast<std::size_t>(item.first.Mark().column);
+    if (!hash) return;
+    constexpr std::size_t kDigits = 64;
+    if (!hash.IsScalar() || hash.Scalar().size() != kDigits ||
+        hash.Scalar().find_first_not_of("0123456789abcdef") != std::string::npos)
+      fail(hash.Mark().line, "'reference_sha256' is no SHA-256; allowed: 64 digits, which bless writes");
+    out_.reference_sha256 = hash.Scalar();
+    out_.reference_sha256_at = place(hash);
   }
 
   std::vector<std::string> words(const YAML::Node& root, const char* key, bool allowed) {
@@ -245,6 +266,14 @@ Baseline read_baseline(const std::filesystem::path& file) {
 
 Baseline parse_baseline(const std::filesystem::path& file, std::string text) {
   return BaselineReader(file, std::move(text)).read();
+}
+
+std::string with_reference_hash(const Baseline& baseline, const std::string& hash) {
+  std::string out = baseline.text;
+  if (!baseline.reference_sha256.empty())
+    return out.replace(baseline.reference_sha256_at, baseline.reference_sha256.size(), hash);
+  return out.insert(baseline.reference_line_at,
+                    fmt::format("\n{:{}}reference_sha256: {}", "", baseline.reference_indent, hash));
 }
 
 std::string commit_text(const RunFigures& run) {

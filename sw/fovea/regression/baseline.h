@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sw/fovea/output_folder.h"
 #include "sw/fovea/regression/run_figures.h"
 #include "sw/fovea/regression/tolerance.h"
 
@@ -41,6 +42,10 @@ struct Baseline {
   std::size_t version_at = 0, commit_at = 0;  ///< of these texts in the file
   std::map<std::string, std::string> settings;  ///< parameters that a run must have
   std::filesystem::path reference;            ///< folder of the reference; empty: none
+  std::string reference_sha256;               ///< of its files; empty: not known, as in one written by hand
+  std::size_t reference_sha256_at = 0;        ///< of this text in the file
+  /// Where a line with it can be put in: at the end of this line of the file, behind so many blanks.
+  std::size_t reference_line_at = 0, reference_indent = 0;
   std::vector<Expectation> metrics;           ///< in the order of the file
   /// How the file writes its history: a list of lines, `[]`, or none.
   struct History {
@@ -65,10 +70,24 @@ std::string yaml_scalar(const std::string& text);
 /// The simulator's commit for a baseline; that of a modified source ends in "-modified".
 std::string commit_text(const RunFigures& run);
 
+/// The text of a baseline with another hash of its reference.
+std::string with_reference_hash(const Baseline& baseline, const std::string& hash);
+
 /// Files that a baseline keeps of the run it was taken from: where the clocks went, parameters and
 /// figures. Names of files of the host are left out. The result maps names to texts.
 std::map<std::string, std::string> reference_files(const RunFigures& run);
-/// Reads them. @throws UserError
+/// The folder that holds them.
+extern const app::FolderKind kReferenceKind;
+
+/// The hash of such files, of names and contents; empty for none.
+std::string reference_hash(const std::map<std::string, std::string>& files);
+/// That of the files in a folder; empty if there are none, or it is no folder. @throws UserError
+std::string reference_hash(const std::filesystem::path& folder);
+
+/// Where the reference of a baseline is. A `fovea bless` that was killed may have left it beside its place, and in its
+/// place that of the baseline which it did not write any more. @throws UserError: it is not there, or is another one
+std::filesystem::path reference_folder(const Baseline& baseline);
+/// Reads it. @throws UserError
 RunFigures read_reference(const Baseline& baseline);
 
 }  // namespace fovea::regression

@@ -134,7 +134,11 @@ PairRuns::PairRuns(const PairRequest& request, const app::CliContext& context) :
     after_ = read_run(place / "b");
     const fs::path reference = temporary_ / "reference";
     fs::create_directories(reference, error);
-    for (const auto& [name, text] : reference_files(before)) app::write_file(reference / name, text);
+    for (const auto& [name, text] : reference_files(before)) {
+      app::CheckedFile file(reference / name, app::CheckedFile::New{});
+      file.write(text);
+      file.close();
+    }
     baseline_ = parse_baseline(
         temporary_ / "a.yaml",
         new_baseline({.run = &before, .tolerance = tolerance, .reference = "reference", .why = "the program before"}));

@@ -1,6 +1,8 @@
 // The files that a baseline keeps of the run it was taken from.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 
 #include "model/common/check.h"
@@ -8,8 +10,26 @@
 #include "sw/fovea/regression/attribution.h"
 #include "sw/fovea/regression/baseline.h"
 #include "sw/fovea/regression/table_file.h"
+#include "sw/fovea/sha256.h"
 
 namespace fovea::regression {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 7> kNames = {"figures.csv",   "parameters.csv", "inputs.csv", "profile.csv",
+                                                    "functions.csv", "paths.csv",      "objects.csv"};
+constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20;
+
+bool is_reference_file(std::string_view name) { return std::find(kNames.begin(), kNames.end(), name) != kNames.end(); }
+
+}  // namespace
+
+const app::FolderKind kReferenceKind = {.owner = "a baseline's reference",
+                                        .is_file = is_reference_file,
+                                        .folders = {},
+                                        .mark = "figures.csv",
+                                        .is_foreign_mark = [](const fs::path&) { return false; }};
 
 std::map<std::string, std::string> reference_files(const RunFigures& run) {
   std::map<std::string, std::string> out;
@@ -30,14 +50,42 @@ std::map<std::string, std::string> reference_files(const RunFigures& run) {
   return out;
 }
 
-RunFigures read_reference(const Baseline& baseline) {
+std::string reference_hash(const std::map<std::string, std::string>& files) {
+  std::string all;
+  for (const auto& [name, text] : files) all += fmt::format("{} {}\n{}", name, text.size(), text);
+  return files.empty() ? "" : app::sha256_of_text(all);
+}
+
+std::string reference_hash(const fs::path& folder) {
   std::error_code error;
-  if (!std::filesystem::is_directory(baseline.reference, error))
-    throw UserError(fmt::format("{}: the folder '{}' that 'reference' names is not there",
-                                app::one_line(baseline.file.string()),
-                                app::one_line(baseline.reference.string())));
+  std::map<std::string, std::string> files;
+  for (const std::string_view name : kNames)
+    if (fs::exists(folder / name, error)) files[std::string(name)] = app::read_file(folder / name, kMaxFileBytes);
+  return reference_hash(files);
+}
+
+fs::path reference_folder(const Baseline& baseline) {
+  std::error_code error;
+  const std::string file = app::one_line(baseline.file.string()), name = app::one_line(baseline.reference.string());
+  if (baseline.reference_sha256.empty()) {
+    if (fs::is_directory(baseline.reference, error)) return baseline.reference;
+    throw UserError(fmt::format("{}: the folder '{}' that 'reference' names is not there", file, name));
+  }
+  for (const char* suffix : {"", ".tmp", ".old"})
+    if (fs::path folder = app::with_suffix(baseline.reference, suffix);
+        reference_hash(folder) == baseline.reference_sha256)
+      return folder;
+  throw UserError(
+      fmt::format("{}: the folder '{}' {}; allowed: the folder that was made with the baseline, or 'fovea bless' of a "
+                  "run, which writes both",
+                  file, name,
+                  fs::is_directory(baseline.reference, error) ? "has other files than 'reference_sha256' says"
+                                                              : "that 'reference' names is not there"));
+}
+
+RunFigures read_reference(const Baseline& baseline) {
   RunFigures run;
-  run.folder = baseline.reference;
+  run.folder = reference_folder(baseline);
   run.version = baseline.version;
   run.commit = baseline.commit;
   constexpr std::string_view kModified = "-modified";

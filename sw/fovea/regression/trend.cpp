@@ -62,6 +62,10 @@ TrendFile::TrendFile(const std::filesystem::path& file) : file_(file) {
   // SQLite has names of its own, ":memory:" and "file:...?mode="; none of them begins with a slash.
   std::error_code error;
   const std::filesystem::path place = std::filesystem::absolute(file, error);
+  // SQLite follows links and changes what it finds in place.
+  if (std::error_code unknown; std::filesystem::is_symlink(std::filesystem::symlink_status(place, unknown)))
+    throw UserError(fmt::format("--database '{}': it is a symbolic link; allowed: the file itself",
+                                app::one_line(file.string())));
   const bool failed = error || sqlite3_open(place.c_str(), &db_) != SQLITE_OK;
   try {
     if (failed) fail(sqlite3_errmsg(db_));
@@ -171,10 +175,12 @@ std::vector<TrendLine> TrendFile::lines(const std::string& experiment) const {
     const json units = json::parse(s.text(5), nullptr, false);
     if (!figures.is_object() || !units.is_object())
       fail("the line of commit " + line.commit + " cannot be read");
-    for (const auto& [name, value] : figures.items())
-      if (value.is_number())
-        line.figures[name] = {value.get<double>(), units.value(name, std::string()),
-                              value.is_number_integer()};
+    for (const auto& [name, value] : figures.items()) {
+      if (!value.is_number()) continue;
+      const json unit = units.value(name, json(""));
+      if (!unit.is_string()) fail("the line of commit " + line.commit + " cannot be read");
+      line.figures[name] = {value.get<double>(), unit.get<std::string>(), value.is_number_integer()};
+    }
     out.push_back(std::move(line));
   }
   return out;

@@ -1,14 +1,14 @@
 // `fovea trend`: lines are added, jumps are named, and a picture is drawn.
 #include <fmt/format.h>
-#include <stdio.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
+#include <optional>
 #include <ostream>
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/child_process.h"
 #include "sw/fovea/output_file.h"
 #include "sw/fovea/regression/compare.h"
 #include "sw/fovea/regression/regression_command.h"
@@ -30,19 +30,27 @@ constexpr const char* kNotCounted =
     ", without the simulator's host instructions: the host did not count them; --host-instructions gives them";
 
 /// The commit of the repository in which the current folder lies, with "-modified" if its files differ from it; empty:
-/// there is none.
-std::string current_commit() {
-  const std::unique_ptr<FILE, int (*)(FILE*)> git(
-      ::popen("git describe --always --abbrev=12 --dirty=-modified --exclude='*' 2>/dev/null", "re"), ::pclose);
-  std::array<char, 128> line{};
-  if (!git || !::fgets(line.data(), line.size(), git.get())) return "";
-  std::string out = line.data();
+/// there is none. @throws UserError: git hangs @throws Stopped
+std::string current_commit(const CliContext& context) {
+  std::optional<ChildProcess> git;
+  try {
+    git.emplace(std::vector<std::string>{"git", "describe", "--always", "--abbrev=12", "--dirty=-modified",
+                                         "--exclude=*"},
+                ChildProcess::Stream::kOutput, "the current folder's commit, which --commit would give",
+                Patience{context.stop});
+  } catch (const UserError&) {
+    return "";  // no git
+  }
+  std::string out;
+  while (git->read_some(out)) {
+  }
+  if (git->finish() != 0) return "";
   return out.erase(out.find_last_not_of('\n') + 1);
 }
 
-std::string commit_of(const RegressionOptions::Trend& o) {
+std::string commit_of(const RegressionOptions::Trend& o, const CliContext& context) {
   if (!o.commit.empty()) return o.commit;
-  std::string out = current_commit();
+  std::string out = current_commit(context);
   if (out.empty())
     throw UserError(
         "--commit is missing: the current folder is in no git repository with a commit; name the state of the "
@@ -79,7 +87,7 @@ int command_trend(const RegressionOptions::Trend& o, const CliContext& context) 
   const Tolerance tolerance = parse_tolerance(o.tolerance, "--tolerance");
   std::vector<RunFigures> runs;
   for (const auto& folder : o.folders) runs.push_back(read_run(folder));
-  const std::string commit = runs.empty() ? "" : commit_of(o);
+  const std::string commit = runs.empty() ? "" : commit_of(o, context);
   std::unique_ptr<OutputFile> plot;
   if (!o.plot.empty())
     plot = std::make_unique<OutputFile>(o.plot, "--plot", "a picture of 'fovea trend'",
