@@ -64,6 +64,9 @@ class Block {
   virtual bool idle() const { return true; }
   /// The chip leaves reset: all blocks are idle.
   virtual void leave_reset() {}
+  /// A sentence about the first difference between two models of this block that are compared while both run. Empty:
+  /// there is none, or one model only. The block pauses the kernel when it finds one.
+  virtual std::string difference() const { return {}; }
 
  protected:
   /// The group is reset when the measured window opens and reported when it closes.

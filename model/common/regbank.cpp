@@ -103,6 +103,7 @@ Access RegBank::write(Reg* r, std::uint32_t offset, unsigned bytes, std::uint32_
   const std::uint32_t keep = (r->rw_ | r->wo_) & lanes;
   r->value_ = (r->value_ & ~keep) | (word & keep);
   r->value_ &= ~(word & r->w1c_);
+  r->lanes_ = lanes;
   if (r->on_write_) r->on_write_(word);
   return Access::kOk;
 }

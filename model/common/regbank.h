@@ -73,12 +73,16 @@ class Reg {
   /// Called after each write has taken effect, with the word as written (byte lanes that were not
   /// written are 0).
   void on_write(std::function<void(std::uint32_t)> f) { on_write_ = std::move(f); }
+  /// Bits in the byte lanes of the latest write; of interest to on_write.
+  std::uint32_t written_lanes() const { return lanes_; }
 
   const std::string& name() const { return name_; }
   const std::string& sentence() const { return sentence_; }
   std::uint32_t offset() const { return offset_; }
   std::uint32_t reset_value() const { return reset_; }
   const std::vector<Field*>& fields() const { return fields_; }
+  /// Bits that keep what is written.
+  std::uint32_t writable() const { return rw_; }
   /// Reserved bits, where software should write 0: those that belong to no field and reset to 0.
   std::uint32_t reserved() const { return ~(covered_ | reset_); }
   /// Bits of which only some values are modelled.
@@ -100,7 +104,7 @@ class Reg {
   void add(Limit limit);
   std::string name_, sentence_;
   std::uint32_t offset_, reset_, value_;
-  std::uint32_t rw_ = 0, w1c_ = 0, wo_ = 0, covered_ = 0, limited_ = 0;
+  std::uint32_t rw_ = 0, w1c_ = 0, wo_ = 0, covered_ = 0, limited_ = 0, lanes_ = 0;
   std::vector<Field*> fields_;
   std::vector<Limit> limits_;
   std::function<void()> on_read_;

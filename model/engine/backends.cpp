@@ -41,7 +41,7 @@ namespace {
 }  // namespace
 
 std::unique_ptr<EngineBackend> make_backend(const EngineParams& params, const Clock& clock,
-                                            EngineBackend::Host& host, OnCompared on_compared) {
+                                            EngineBackend::Host& host, [[maybe_unused]] Comparison comparison) {
   const Geometry geometry{.log_lines = params.log_cache_lines(),
                           .prefetch = static_cast<unsigned>(params.prefetch())};
   const auto tlm = [&clock, geometry](EngineBackend::Host& h) {
@@ -51,14 +51,24 @@ std::unique_ptr<EngineBackend> make_backend(const EngineParams& params, const Cl
   if (params.kind.is("tlm") || params.kind.is("none")) return tlm(host);
 #ifdef FOVEA_ENGINE_RTL
   require_built_sizes(params);
+  const auto recorded = std::make_shared<rtl::RtlBackend*>(nullptr);  // belongs to the backend that is returned
   const auto rtl = [&](EngineBackend::Host& h) {
-    return std::make_unique<rtl::RtlBackend>(h, clock, rtl::RtlBackend::Options{.waves = waves_of(params)});
+    auto made = std::make_unique<rtl::RtlBackend>(h, clock, rtl::RtlBackend::Options{.waves = waves_of(params)});
+    *recorded = made.get();
+    return made;
   };
   if (params.kind.is("rtl")) return rtl(host);
-  std::unique_ptr<rtl::PairBackend> pair;
-  if (params.kind.is("both")) pair = std::make_unique<rtl::PairBackend>(host, clock, rtl, tlm);
-  else pair = std::make_unique<rtl::PairBackend>(host, clock, tlm, rtl);
-  pair->on_compared = std::move(on_compared);
+  const bool rtl_owns = params.kind.is("both");
+  const auto differ = [recorded, say = std::move(comparison.on_difference)](const std::string& what, Picoseconds at) {
+    (*recorded)->finish_at(at + kPsPerUs);
+    say(what);
+  };
+  const rtl::PairBackend::Maker as_rtl = rtl, as_tlm = tlm;
+  auto pair = std::make_unique<rtl::PairBackend>(host, clock, rtl_owns ? as_rtl : as_tlm, rtl_owns ? as_tlm : as_rtl,
+                                                 differ);
+  pair->on_compared = std::move(comparison.on_equal);
+  pair->on_skipped = std::move(comparison.on_skipped);
+  pair->planted = planted_difference;
   return pair;
 #endif
   throw UserError("key 'engine': '" + params.kind() +

@@ -2,26 +2,24 @@
 
 #include <algorithm>
 
-#include "model/engine/backends.h"
-
 namespace fovea::engine {
 namespace {
 
 constexpr unsigned kTagBits = 48;
 
-/// Bits that a read returns as they were written.
-std::uint32_t writable(const Reg& reg) {
-  std::uint32_t bits = 0;
-  for (const Field* f : reg.fields())
-    if (f->mode() == Mode::kRw) bits |= f->mask();
-  return bits;
+/// A bit for each byte of which a bit is set.
+unsigned strobes_of(std::uint32_t lanes) {
+  unsigned strobes = 0;
+  for (unsigned n = 0; n < 4; ++n)
+    if (lanes >> 8 * n & 0xFF) strobes |= 1u << n;
+  return strobes;
 }
 
 }  // namespace
 
 RemapEngine::RemapEngine(sc_core::sc_module_name name, const EngineParams& params)
     : BusTarget(name, regs),
-      backend_(make_backend(params, clock_, *this, [this](std::int64_t lag) { pair->note(lag); })),
+      backend_(make_backend(params, clock_, *this, comparison())),
       memory_("memory", Master::kRemapEngine, kSlots,
               backend_->takes_answers_ahead() ? BurstMaster::Report::kFirstBeatWhenDecided
                                               : BurstMaster::Report::kAtFirstBeat),
@@ -46,7 +44,17 @@ RemapEngine::RemapEngine(sc_core::sc_module_name name, const EngineParams& param
   sensitive << clk;
 }
 
-/// The values are the backend's; the declaration has the masks.
+Comparison RemapEngine::comparison() {
+  return {.on_equal = [this](std::int64_t lag) { pair->note(lag); },
+          .on_skipped = [this](std::uint64_t requests) { pair->skipped += requests; },
+          .on_difference =
+              [this](const std::string& what) {
+                difference_ = what;
+                sc_core::sc_pause();
+              }};
+}
+
+/// The values are the backend's.
 void RemapEngine::connect(Reg& reg) {
   reg.on_read([this, &reg] {
     const Picoseconds now = kernel_time();
@@ -55,13 +63,10 @@ void RemapEngine::connect(Reg& reg) {
     if (&reg == &regs.ended) count_jobs(reg.get());
     go_on();
   });
-  const std::uint32_t kept = writable(reg);
-  reg.on_write([this, &reg, kept](std::uint32_t word) {
+  reg.on_write([this, &reg](std::uint32_t word) {
     const Picoseconds now = kernel_time();
     backend_->run(now);
-    // A field that keeps what is written has lanes of earlier writes too; of a command only these lanes count.
-    const std::uint32_t value = reg.fields().empty() ? reg.get() : (reg.get() & kept) | (word & ~kept);
-    backend_->write(reg.offset(), value, now);
+    backend_->write(reg.offset(), word, strobes_of(reg.written_lanes()), now);
     go_on();
   });
 }

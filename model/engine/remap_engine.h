@@ -16,6 +16,7 @@
 #include "model/common/stats.h"
 #include "model/common/timed_counter.h"
 #include "model/common/timer.h"
+#include "model/engine/backends.h"
 #include "model/engine/core/engine_backend.h"
 #include "model/engine/core/engine_registers.h"
 #include "model/engine/engine_params.h"
@@ -39,6 +40,7 @@ struct EngineStats : StatGroup {
 struct PairStats final : StatGroup {
   static constexpr std::array<unsigned, 6> kUpTo{0, 1, 3, 7, 15, 63};
   Counter requests{*this, "requests", "1", "requests that were compared, and equal"};
+  Counter skipped{*this, "skipped", "1", "requests behind an error or an abort, which were not compared"};
   Maximum most{*this, "most", "1", "clocks between the same request of both, at most"};
   std::deque<Counter> within;  ///< `within_N`: at most N clocks apart
   PairStats() : StatGroup("engine.pair") {
@@ -71,7 +73,7 @@ class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private Engin
   RemapEngine(sc_core::sc_module_name name, const EngineParams& params);
 
   bool idle() const override { return memory_.idle(); }
-  const EngineBackend& backend() const { return *backend_; }
+  std::string difference() const override { return difference_; }
 
  protected:
   bool holes_answer() const override { return false; }
@@ -93,6 +95,7 @@ class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private Engin
   void report_errors();
   void answered(const BurstMaster::Completion& c);
   void go_on();
+  Comparison comparison();
   void count_jobs(std::uint32_t ended);
   void clock_changed();
   void connect(Reg& reg);
@@ -105,6 +108,7 @@ class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private Engin
   Picoseconds next_call_ = kNever;  // to which `call_` is set
   std::deque<Waiting> waiting_;  // for a free slot
   std::deque<std::pair<Picoseconds, bool>> failures_;  // times of errors that lie ahead, and whether of a write
+  std::string difference_;       // between the backends that are compared
   std::uint64_t resets_ = 0;
   bool was_busy_ = false;
   std::uint16_t ended_ = 0;      // ENDED.COUNT when it was seen last

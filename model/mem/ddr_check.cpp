@@ -34,6 +34,7 @@ check::DataSheet as_programmed(const DdrConfig& c) {
   s.tRASmax = std::uint64_t{c.row_intervals} * c.refresh_interval;
   s.banks = c.timing.banks;
   s.mobile = c.timing.mobile;
+  s.refresh_after_sleep = c.timing.mobile;
   return s;
 }
 

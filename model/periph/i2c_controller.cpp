@@ -30,6 +30,7 @@ I2cController::I2cController(sc_core::sc_module_name name)
   });
   regs.icimr.on_write([this](std::uint32_t) { refresh(); });
   regs.icdxr.on_write([this](std::uint32_t) {
+    if (!(regs.icdxr.written_lanes() & 0xFF)) return;  // the data are the lowest byte
     clear_flag(kXrdy);
     if (state_ == State::kWaitData) next_byte();
     refresh();

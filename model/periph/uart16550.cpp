@@ -8,6 +8,9 @@ namespace {
 enum : std::uint32_t { kDr = 0x01, kOe = 0x02, kThre = 0x20, kTemt = 0x40 };
 enum : std::uint8_t { kErbi = 1, kEtbei = 2, kElsi = 4 };
 enum : std::uint32_t { kNone = 1, kTxEmpty = 2, kRxData = 4, kLineStatus = 6, kRxTimeout = 12 };
+
+/// The part's registers have eight bits: a write of the other bytes of a word reaches none of them.
+bool reaches(const Reg& reg) { return reg.written_lanes() & 0xFF; }
 }  // namespace
 
 Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
@@ -15,6 +18,7 @@ Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
   add_interrupt("irq", irq);
   // Several registers share the offsets 0, 4 and 8, so their values are kept outside the bank.
   regs.rbr.on_write([this](std::uint32_t word) {
+    if (!reaches(regs.rbr)) return;
     if (regs.lcr.dlab)
       regs.dll.set(word & 0xFF);
     else
@@ -25,6 +29,7 @@ Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
     regs.rbr.set(regs.lcr.dlab ? regs.dll.get() : last_rx_);
   });
   regs.ier.on_write([this](std::uint32_t word) {
+    if (!reaches(regs.ier)) return;
     if (regs.lcr.dlab) {
       regs.dlh.set(word & 0xFF);
     } else {
@@ -36,7 +41,9 @@ Uart16550::Uart16550(sc_core::sc_module_name name, const char* selection)
     refresh();
   });
   regs.ier.on_read([this] { regs.ier.set(regs.lcr.dlab ? regs.dlh.get() : ier_); });
-  regs.iir.on_write([this](std::uint32_t word) { fcr_written(word); });
+  regs.iir.on_write([this](std::uint32_t word) {
+    if (reaches(regs.iir)) fcr_written(word);
+  });
   regs.iir.on_read([this] {
     const std::uint32_t id = interrupt_id();
     regs.iir.set(id | (fifo_mode() ? 0xC0u : 0u));
@@ -110,8 +117,10 @@ void Uart16550::read_data() {
   refresh();
 }
 
+/// Without FIFOEN the other bits are not programmed (PC16550D, 8.4).
 void Uart16550::fcr_written(std::uint32_t word) {
   const bool was = fifo_mode();
+  if (!(word & 1)) word = 0;
   fcr_ = static_cast<std::uint8_t>(word & 0xC9);
   const bool toggled = was != fifo_mode();  // changing the mode empties both FIFOs
   if ((word & 2) || toggled) {

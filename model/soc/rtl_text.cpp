@@ -16,16 +16,6 @@ std::string format(const char* how, Numbers... numbers) {
   return text;
 }
 
-/// Bits that keep what is written to them.
-std::uint32_t writable(RegBank& bank, const Reg& r) {
-  std::uint32_t ones = 0, zeros = 0;
-  bank.write(r.offset(), 4, ~0u);
-  bank.peek(r.offset(), ones);
-  bank.write(r.offset(), 4, 0);
-  bank.peek(r.offset(), zeros);
-  return ones & ~zeros;
-}
-
 const char* name_of(Mode mode) {
   switch (mode) {
     case Mode::kRw: return "rw";
@@ -79,9 +69,8 @@ RtlText rtl_text(RegBank& fresh) {
     FOVEA_CHECK(r->offset() < 0x400, "register beyond the address lines of remap_regs: " + r->name());
     const unsigned word = r->offset() / 4;
     present[word / 32] |= 1u << word % 32;
-    const std::uint32_t mask = writable(fresh, *r);
-    registers += declarations(*r, mask);
-    out.table += rows(*r, mask);
+    registers += declarations(*r, r->writable());
+    out.table += rows(*r, r->writable());
   }
   out.package =
       "// Registers of the remap engine. Printed by `platform_text remap_regs_pkg.sv` from\n"

@@ -21,11 +21,11 @@ module remap_map_reader (
 );
   localparam logic [5:0] Depth = 6'd32;   // beats of 64 bits
   logic [25:0] line;
-  logic [22:0] left;                       // beats not asked for
+  logic [23:0] left;                       // beats not asked for, up to 2^23
   logic [5:0]  promised;                   // beats asked for and not yet taken out of the buffer
   logic [3:0]  length;
   logic        asks, takes;
-  assign length = left < 23'd8 ? left[3:0] : 4'd8;
+  assign length = left < 24'd8 ? left[3:0] : 4'd8;
   assign asks = ar_valid_o && ar_ready_i;
 
   always_ff @(posedge clk_i or negedge rst_ni)
@@ -40,7 +40,7 @@ module remap_map_reader (
       left <= '0;
     end else if (start_i) begin
       line <= base_i;
-      left <= words_i[23:1] + {22'd0, words_i[0]};
+      left <= {1'b0, words_i[23:1]} + {23'd0, words_i[0]};
     end else if (asks) begin
       ar_valid_o <= 1'b0;
     end else if (!ar_valid_o && !stop_i && left != '0 && promised <= Depth - 6'd8) begin
@@ -48,7 +48,7 @@ module remap_map_reader (
       ar_addr_o <= {line, 6'd0};
       ar_len_o <= {4'd0, length} - 8'd1;
       line <= line + 1'b1;
-      left <= left - {19'd0, length};
+      left <= left - {20'd0, length};
     end
 
   // Beats asked for, with those of an offer that is still standing.

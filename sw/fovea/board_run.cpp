@@ -116,6 +116,7 @@ class BoardSimulation : public Simulation {
   void attach_host(Session& s);
   Picoseconds next_slice(Session& s) const;
   bool guest_failed(Session& s) const;
+  bool models_differ(Session& s) const;
   bool ended(const Session& s) const;
   bool firmware_gave_up(Session& s) const;
   bool simulate(Session& s);
@@ -268,6 +269,7 @@ struct BoardSimulation::Session {
   const ElfImage& program;
   std::exception_ptr failure;  ///< of a writer: it must not unwind through the kernel
   std::string guest;           ///< why the guest failed
+  std::string difference;      ///< between two models of a block
   std::optional<BoardConsole> console;
   std::optional<HazardReport> hazards;
   BoardDebugMemory debug_memory;
@@ -416,6 +418,13 @@ bool BoardSimulation::guest_failed(Session& s) const {
   return false;
 }
 
+/// A block found its two models to differ, and paused the kernel.
+bool BoardSimulation::models_differ(Session& s) const {
+  for (const auto& [name, block] : board_->platform.blocks())
+    if (s.difference.empty()) s.difference = block->difference();
+  return !s.difference.empty();
+}
+
 /// The run has ended, and the core's counters are those of its end, as far as they will be.
 bool BoardSimulation::ended(const Session& s) const {
   const bool asleep = s.run_end.met() && figures_->asleep_at_end();
@@ -452,7 +461,7 @@ bool BoardSimulation::simulate(Session& s) {
                              s.wants_frames() ? params_.run.frames() : 0, executed,
                              phase_name(board_->log)});
     const bool left = s.console && s.console->look();
-    if (guest_failed(s) || ended(s)) return true;
+    if (models_differ(s) || guest_failed(s) || ended(s)) return true;
     if (s.failure || request.stop.load() || left || s.lost() || (s.gdb && s.gdb->killed())) return false;
     if (s.gdb) s.gdb->look(arm.asleep());
     if (const auto option = request.limits.reached(kernel_time(), executed); !option.empty())
@@ -469,7 +478,7 @@ void BoardSimulation::state_end(Session& s, RunResult& result) const {
         fmt::format("run.until = {} not met within {}", params_.run.until(), met->what));
   else if (met)
     result.ended = ended_text(*met);
-  if (result.complete && s.guest.empty())
+  if (result.complete && s.guest.empty() && s.difference.empty())
     result.ended_by = met ? met->what : "frames";
   else
     result.complete = false;
@@ -502,6 +511,7 @@ void BoardSimulation::collect(Session& s, RunResult& result) {
       if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
     });
   result.guest_failure = s.guest;
+  result.difference = s.difference;
   const cpu::Counts counted = figures_->collect(result);
   if (mosaic_score_) mosaic_score_->add(result.stats, board_->camera_stats());
   if (picture_score_) picture_score_->add(result.stats);

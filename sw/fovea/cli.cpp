@@ -339,6 +339,9 @@ int report_failure(const CliContext& context) {
     context.err << "fovea: " << e.what() << "; there are no results" << std::endl;
     return context.signal && context.signal->load() ? 128 + context.signal->load()
                                                     : kExitGuestFailed;
+  } catch (const ModelsDiffer& e) {
+    context.err << "fovea: " << printable(e.what()) << std::endl;
+    return kExitCheckFailed;
   } catch (const GuestFailure& e) {
     context.err << "fovea: the guest failed: " << printable(e.what()) << std::endl;
     return kExitGuestFailed;

@@ -66,6 +66,7 @@ ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOpt
   out.left = uart0.quit();
   out.exit_code = result.exit_code.value_or(0);
   out.guest_failure = std::move(result.guest_failure);
+  out.difference = std::move(result.difference);
   out.stats = std::move(result.stats);
   out.host = std::move(result.host);
   out.stalls = std::move(result.stalls);
@@ -273,9 +274,10 @@ void write_program_results(const ExecOptions& o, const ExecResult& result, const
   say_note(dir.commit(result.complete && result.guest_failure.empty()), context);
 }
 
-/// The exit status. `lost`: the program's output could not be written. @throws GuestFailure, UserError
+/// The exit status. `lost`: the program's output could not be written. @throws ModelsDiffer, GuestFailure, UserError
 int program_status(const ExecOptions& o, const ExecResult& result, bool lost, const CliContext& context) {
   for (const std::string& why : result.lost) say_note(why + "; the other results are there", context);
+  if (!result.difference.empty()) throw ModelsDiffer(result.difference);
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
   if (o.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
   if (lost) throw UserError("the program's output cannot be written");

@@ -165,11 +165,12 @@ void report_run(const RunOptions& options, const RunResult& result, const std::v
   report << std::flush;
 }
 
-/// The exit status of a run whose results are written. @throws GuestFailure, UserError
+/// The exit status of a run whose results are written. @throws ModelsDiffer, GuestFailure, UserError
 int run_status(const RunOptions& options, const RunResult& result, bool quit, const CliContext& context) {
   for (const std::string& why : result.lost) say_note(why + "; the other results are there", context);
   if (!result.untyped.empty())
     context.err << fmt::format("fovea: warning: uart0.input is not over: {}\n", result.untyped);
+  if (!result.difference.empty()) throw ModelsDiffer(result.difference);
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
   if (options.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
   if (!context.out) throw UserError("the program's output cannot be written");

@@ -44,6 +44,7 @@ struct ExecResult {
   int exit_code = 0;          ///< the program's own
   Frequency core_clock;
   std::string guest_failure;  ///< not empty: the guest failed (exit 3); may have several lines
+  std::string difference;     ///< with --board: two models of a block differ (exit 1); empty: none do
   std::vector<StatRow> stats, host;
   std::vector<StallRow> stalls;
   std::string registers;  ///< the register log, if requested

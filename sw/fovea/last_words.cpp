@@ -309,6 +309,21 @@ std::string camera_lines(std::span<const StatRow> stats) {
   return parts.empty() ? "" : paragraph("cameras", fmt::format("{}", fmt::join(parts, "; ")));
 }
 
+/// With two models of the remap engine: how far they agree.
+std::string engine_line(std::span<const StatRow> stats) {
+  if (!find(stats, "engine.pair.requests")) return "";
+  const std::uint64_t all = count(stats, "engine.pair.requests"), same = count(stats, "engine.pair.within_0");
+  std::string out = fmt::format("{} requests of RTL and model are equal in data", all);
+  if (all && same == all) out += " and in time";
+  if (same < all)  // rounded down: 100 % would be all of them
+    out += fmt::format(", {:.1f}\x1f% of them at the same clock, the others at most {}\x1f" "clock{} apart",
+                       std::floor(1000 * static_cast<double>(same) / static_cast<double>(all)) / 10,
+                       count(stats, "engine.pair.most"), count(stats, "engine.pair.most") == 1 ? "" : "s");
+  if (const std::uint64_t skipped = count(stats, "engine.pair.skipped"))
+    out += fmt::format("; {} behind an error or an abort were not compared", skipped);
+  return paragraph("engine", out);
+}
+
 }  // namespace
 
 std::vector<std::uint64_t> apportioned(std::uint64_t total, std::span<const std::uint64_t> shares) {
@@ -354,7 +369,7 @@ std::string run_words(std::span<const StatRow> stats, std::span<const StatRow> h
                       std::span<const SlowestRow> slowest) {
   return verdict(stats) + frame_budget(stats) + frame_lines(stats) + camera_lines(stats) + quality_line(stats) +
          core_line(stats) + sdram_line(stats, real(stats, "frame.window")) + wait_line(stats) + slowest_lines(slowest) +
-         host_line(host);
+         engine_line(stats) + host_line(host);
 }
 
 std::string replay_words(std::span<const StatRow> stats, std::span<const StatRow> host,
@@ -379,7 +394,7 @@ std::string exec_words(std::span<const StatRow> stats, Frequency core_clock) {
   if (!core_clock.stopped())
     out += fmt::format(": {:.6f}\x1fs at {:.5g}\x1fMHz", static_cast<double>(cycles) / core_clock.hertz(),
                        core_clock.hertz() * 1e-6);
-  return paragraph("core", out) + core_line(stats);
+  return paragraph("core", out) + core_line(stats) + engine_line(stats);
 }
 
 }  // namespace fovea::app

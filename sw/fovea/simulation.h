@@ -8,6 +8,7 @@
 #include <optional>
 #include <ostream>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,7 @@ struct RunRequest {
 struct RunResult {
   bool complete = true;        ///< false: stopped before all requested frames were displayed
   std::string guest_failure;   ///< not empty: the guest failed (exit 3); may have several lines
+  std::string difference;      ///< not empty: two models of a block that ran side by side differ (exit 1)
   std::vector<StatRow> stats;  ///< for stats.json, in any order
   std::vector<StatRow> host;   ///< for host.json, in any order
   std::vector<FrameRow> frames;
@@ -103,6 +105,11 @@ struct RunResult {
   ProfileResult profile;  ///< with --profile
   std::string hazards;    ///< a sentence about the coherency hazards that were found; empty: none
   std::vector<std::string> lost = {};  ///< why outputs beside the results could not be written, a sentence each
+};
+
+/// Two models of a block that ran side by side differ. Exit status 1, as of a check that failed.
+struct ModelsDiffer : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// A board that can run once.

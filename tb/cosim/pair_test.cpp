@@ -35,7 +35,7 @@ class Fake : public EngineBackend {
     return next_ < script_.size() ? script_[next_].at : kNever;
   }
   std::uint32_t read(std::uint32_t offset, Picoseconds) override { return registers[offset]; }
-  void write(std::uint32_t offset, std::uint32_t word, Picoseconds) override { registers[offset] = word; }
+  void write(std::uint32_t offset, std::uint32_t word, unsigned, Picoseconds) override { registers[offset] = word; }
   void answer(const Answer& a) override {
     --open_;
     answers.push_back({a.tag, a.write, a.error, {}, a.first, a.last});
@@ -44,6 +44,9 @@ class Fake : public EngineBackend {
   bool busy() const override { return open_ > 0 || next_ < script_.size(); }
   void reset() override {}
   void line(bool level) { host_.interrupt(level); }
+  engine::JobPlace job() const override { return place; }
+
+  engine::JobPlace place;  // of all requests
 
   std::map<std::uint32_t, std::uint32_t> registers;
   std::vector<Answer> answers;
@@ -60,7 +63,7 @@ struct PairRig : EngineBackend::Host {
   PairRig(const std::vector<Script>& a, const std::vector<Script>& b)
       : pair(*this, clock,
              [&](Host& h) { return keep(owner, h, a); }, [&](Host& h) { return keep(twin, h, b); },
-             [this](const std::string& text) { differences.push_back(text); }) {}
+             [this](const std::string& text, Picoseconds) { differences.push_back(text); }) {}
   static std::unique_ptr<EngineBackend> keep(Fake*& where, Host& h, const std::vector<Script>& script) {
     auto made = std::make_unique<Fake>(h, script);
     where = made.get();
@@ -139,12 +142,31 @@ TEST(PairTest, EachKindOfDifferenceIsFoundOnce) {
   EXPECT_THAT(differences({read, other}, {read}), testing::ElementsAre(HasSubstr("1 that the twin did not ask for")));
   EXPECT_THAT(differences({read}, {read, other}), testing::ElementsAre(HasSubstr("1 that only the twin asked for")));
   EXPECT_THAT(differences({read}, {{0x100, 1000, false, 1}}),
-              testing::ElementsAre(HasSubstr("reads of the source: 1 that only the twin")));
+              testing::ElementsAre(HasSubstr("reads of the source, 1 that only the twin")));
+}
+
+// Pictures of 20 words a row: the result's at 0x200, the source's at 0x1000; the map's at 0x4000.
+TEST(PairTest, ADifferenceHasTimeJobAndPlace) {
+  const auto said = [](const Script& a, const Script& b, bool owner_knows) {
+    PairRig rig({a}, {b});
+    (owner_knows ? rig.owner : rig.twin)->place = {3, 0x5A, 0x400, 20, 0x80, 20, 0x4000};
+    rig.pair.run(7'500'000);
+    return rig.differences.empty() ? "" : rig.differences[0];
+  };
+  const Script write{0x200 + 2 * 80 + 16, 7'000'000, true, 0, 8, 1}, wrong{write.address, write.at, true, 0, 8, 2};
+  for (const bool owner : {true, false})
+    EXPECT_EQ(said(write, wrong, owner),
+              "remap engine: RTL and model differ: writes, number 0: byte 0x000002b0 is 0x01; its twin's 0x02, job 3 "
+              "(tag 0x5a), pixel (8, 2) of the result; at 0.007000 ms");
+  EXPECT_THAT(said({0x1000 + 80 + 32, 1000, false, 1, 32}, {0x2000, 1000, false, 1, 32}, false),
+              HasSubstr("job 3 (tag 0x5a), pixel (16, 1) of the source; at"));
+  EXPECT_THAT(said({0x4040, 1000, false, 0, 64}, {0x4080, 1000, false, 0, 64}, true),
+              HasSubstr("job 3 (tag 0x5a), word 16 of the map; at"));
 }
 
 TEST(PairTest, ARegisterThatDoesNotDependOnTimeIsCompared) {
   PairRig rig({}, {});
-  rig.pair.write(0x40, 5, 1000);
+  rig.pair.write(0x40, 5, 15, 1000);
   EXPECT_EQ(rig.twin->registers[0x40], 5u);
   rig.twin->registers[0x20] = 9;  // clocks
   EXPECT_EQ(rig.pair.read(0x20, 2000), 0u);
@@ -159,7 +181,7 @@ TEST(PairTest, BehindAnErrorOrAnAbortNothingIsComparedUntilBothAreQuiet) {
   for (const bool error : {true, false}) {
     PairRig rig({{0x100, 1000}, {0x900, 9000}}, {{0x100, 1000}, {0x108, 2000}, {0x900, 9000}});
     rig.pair.run(1000);
-    if (!error) rig.pair.write(0x04, 3, 1000);
+    if (!error) rig.pair.write(0x04, 3, 15, 1000);
     rig.answer(0, 1500, error);
     rig.pair.run(2000);
     // The twin's own request is answered with zeros.

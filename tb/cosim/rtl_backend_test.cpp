@@ -39,7 +39,9 @@ struct Bench : ModelBench {
           const PairBackend::Maker as_rtl = [&c](EngineBackend::Host& x) { return std::make_unique<RtlBackend>(x, c); };
           const PairBackend::Maker as_tlm = [&c](EngineBackend::Host& x) { return ModelBench::tlm(c, x); };
           return std::make_unique<PairBackend>(h, c, rtl_owns ? as_rtl : as_tlm, rtl_owns ? as_tlm : as_rtl,
-                                               [this](const std::string& text) { differences.push_back(text); });
+                                               [this](const std::string& text, Picoseconds) {
+                                                 differences.push_back(text);
+                                               });
         }) {}
   void fill(MappedJob& m, Dice& dice) {
     m.job.src_base = kWord;
@@ -169,7 +171,7 @@ TEST(RtlBackendTest, AResetInMidFrameForgetsTheJobAndEverythingElse) {
   RtlBackend rtl(host, clock);
   const auto set = [&](std::uint32_t offset, std::uint32_t word, Picoseconds t) {
     rtl.run(t);
-    rtl.write(offset, word, t);
+    rtl.write(offset, word, 15, t);
     rtl.run(t);
   };
   set(0x44, 40 | 20 << 16, 10'000);  // an impossible job: the source has no size

@@ -84,7 +84,7 @@ inline DataSheet sheet_of(const mem::DdrConfig& c) {
   s.tXSRD = c.timing.nXSRD;
   s.tCKE = c.timing.nCKE;
   s.banks = c.timing.banks;
-  s.mobile = c.timing.mobile;
+  s.mobile = s.refresh_after_sleep = c.timing.mobile;
   return s;
 }
 

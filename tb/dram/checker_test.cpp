@@ -126,6 +126,35 @@ std::string rule_of(const std::vector<Step>& steps, DataSheet s = sheet()) {
   return checker.complaints().empty() ? "" : checker.complaints().back().rule;
 }
 
+// JESD79-2: behind self-refresh a DDR2 part wants a refresh at least before it is put back into it. JESD209 does not
+// ask for it; SPRUH82C 14.2.8: TI's controller gives a mobile part one before any other command.
+TEST(CheckerStateTest, ARefreshComesBetweenTwoSelfRefreshes) {
+  const std::vector<Step> once = {{kSre, 0, 0, 100}, {kSrx, 0, 0, 200}, {kAct, 0, 1, 300}, {kPre, 0, 0, 350}};
+  const auto then = [&](std::vector<Step> more) {
+    more.insert(more.begin(), once.begin(), once.end());
+    return more;
+  };
+  const auto again = then({{kSre, 0, 0, 400}});
+  const auto refreshed = then({{kRef, 0, 0, 400}, {kSre, 0, 0, 500}, {kSrx, 0, 0, 600}});
+  DataSheet s = sheet();
+  EXPECT_EQ(rule_of(again, s), "");
+  s.refresh_before_sleep = true;
+  EXPECT_EQ(rule_of(again, s), "REF between self-refreshes");
+  EXPECT_EQ(rule_of(refreshed, s), "");
+  EXPECT_EQ(rule_of(then({{kPde, 0, 0, 400}}), s), "") << "power-down is no self-refresh";
+  EXPECT_EQ(rule_of({{kSre, 0, 0, 100}}, s), "") << "the first one";
+  s = sheet();
+  s.refresh_after_sleep = true;
+  EXPECT_EQ(rule_of(once, s), "REF after self-refresh");
+  EXPECT_EQ(rule_of({{kSre, 0, 0, 100}, {kSrx, 0, 0, 200}, {kRef, 0, 0, 260}, {kAct, 0, 1, 310}}, s), "");
+  // JESD209: a mobile part stays in self-refresh for tRFC at least.
+  s = sheet();
+  s.tSR = 50;
+  EXPECT_EQ(rule_of({{kSre, 0, 0, 100}, {kSrx, 0, 0, 149}}, s), "tRFC in self-refresh");
+  EXPECT_EQ(rule_of({{kSre, 0, 0, 100}, {kSrx, 0, 0, 150}}, s), "");
+  EXPECT_EQ(rule_of({{kPde, 0, 0, 100}, {kPdx, 0, 0, 149}}, s), "") << "power-down is no self-refresh";
+}
+
 TEST(CheckerStateTest, RowStatesAreEnforced) {
   EXPECT_EQ(rule_of({{kAct, 0, 1, 100}, {kAct, 0, 2, 200}}), "ACT on open bank");
   EXPECT_EQ(rule_of({{kRd, 0, 1, 100}}), "RD on closed bank");

@@ -50,6 +50,56 @@ TEST(PartTest, TooFastAClockIsAWarning) {
             1u);
 }
 
+/// Three reads, 20 us apart, with self-refresh between them: what the part's sheet has against the commands.
+std::string after_naps(const mem::DdrConfig& programmed, const Part& part, std::vector<mem::Cmd>& commands) {
+  const Frequency clock(166'000'000);
+  BenchOptions o;
+  o.ddr = o.scr = clock;
+  o.config = programmed;
+  o.config.low_power = mem::LowPower::kSelfRefresh;
+  DdrBench b(o);
+  std::array<Request, 3> all;
+  for (unsigned i = 0; i < 3; ++i) {
+    all[i].address = at(0, i);
+    EXPECT_TRUE(b.submit_at(all[i], (1 + i) * 20 * kPsPerUs));
+    b.drain();
+  }
+  b.ddr.catch_up(80 * kPsPerUs);
+  EXPECT_EQ(b.checker.total(), 0u) << b.checker.text();
+  PartChecker checker(part, clock, programmed.timing.CL);
+  for (const Logged& l : b.log) {
+    checker.command(translate(l.cmd), l.bank, l.row, l.clock);
+    commands.push_back(l.cmd);
+  }
+  return checker.text();
+}
+
+TEST(PartTest, SelfRefreshAgainWithoutARefreshIsAWarningForDdr2AndDoesNotHappenToAMobilePart) {
+  using enum mem::Cmd;
+  const auto at_166 = [](const Part& p) {
+    const DataSheet s = in_clocks(p, Frequency(166'000'000), 3);
+    mem::DdrConfig c;
+    mem::DdrTiming& t = c.timing;
+    t.CL = 3, t.nRCD = s.tRCD, t.nRP = s.tRP, t.nRAS = s.tRAS, t.nRC = s.tRC, t.nRRD = std::max(s.tRRD, s.tFAW / 4 + 1);
+    t.nWR = s.tWR, t.nWTR = s.tWTR, t.nRTP = s.tRTP, t.nRFC = s.tRFC, t.nXP = s.tXP, t.nCKE = s.tCKE;
+    t.nXSNR = s.tXSNR, t.nXSRD = std::max(s.tXSNR, s.tXSRD), t.banks = s.banks, t.mobile = s.mobile;
+    c.refresh_interval = s.tREFI;
+    return c;
+  };
+  std::vector<mem::Cmd> commands;
+  const Part ddr2 = find_part("mt47h64m16"), mobile = find_part("mt46h64m16lf");
+  EXPECT_EQ(after_naps(at_166(ddr2), ddr2, commands),
+            "REF between self-refreshes: 3 times, against the sheet of MT47H64M16-3 at 166 MHz\n");
+  EXPECT_EQ(std::count(commands.begin(), commands.end(), kRef), 0);
+  commands.clear();
+  EXPECT_EQ(after_naps(at_166(mobile), mobile, commands), "");
+  const std::vector<mem::Cmd> nap = {kSre, kSrx, kRef, kAct, kRd, kPreAll};
+  std::vector<mem::Cmd> all;
+  for (unsigned i = 0; i < 3; ++i) all.insert(all.end(), nap.begin(), nap.end());
+  all.push_back(kSre);
+  EXPECT_EQ(commands, all);
+}
+
 /// Reads that open eight banks one after the other, on a controller programmed so.
 PartChecker::Warning warning(const mem::DdrConfig& programmed, const Part& p, const char* rule,
                              std::string* text = nullptr) {

@@ -275,6 +275,7 @@ void ReferenceController::wake(std::uint64_t clock) {
     if (ddr_.edge(clock) - asleep_at_ > limits_.retention)
       losses_.push_back(config().refreshed_log2);
     backlog_ = since_refresh_ = 0;
+    cycle_begun_ = config().mobile;  // SPRUH82C 14.2.8: mDDR gets a REF before anything else
     expiry_ = clock + config().refresh_interval;
   }
   asleep_ = Sleep::kNever;

@@ -47,7 +47,7 @@ inline DataSheet sheet_of(const ReferenceConfig& c, const ReferenceLimits& limit
   s.tXSRD = c.tXSRD;
   s.tCKE = c.tCKE;
   s.banks = c.banks;
-  s.mobile = c.mobile;
+  s.mobile = s.refresh_after_sleep = c.mobile;
   return s;
 }
 

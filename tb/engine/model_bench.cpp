@@ -6,9 +6,9 @@
 
 namespace fovea::engine {
 
-void ModelBench::set(const Reg& reg, std::uint32_t value) {
+void ModelBench::set(const Reg& reg, std::uint32_t value, unsigned strobes) {
   backend.run(now_);
-  backend.write(reg.offset(), value, now_);
+  backend.write(reg.offset(), value, strobes, now_);
   call_ = backend.run(now_);
 }
 
@@ -39,18 +39,19 @@ void ModelBench::issue(const Burst& burst, Picoseconds at) {
   const std::uint64_t due = at / kPeriod + std::max(memory.latency, 1u);
   Pending p{burst, {}, 0, 0, false};
   const auto& fault = burst.write ? memory.write_fault : memory.read_fault;
-  p.fault = fault && *fault / 64 == burst.address / 64;
-  std::uint32_t* const words = &word(burst.address / 4);
-  word((burst.address + burst.bytes) / 4 - 1);
+  const std::uint32_t first = burst.address / 4 - kBase / 4;
+  const bool outside = first >= words_.size() || words_.size() - first < burst.bytes / 4;
+  p.fault = outside || (fault && *fault / 64 == burst.address / 64);
+  std::uint32_t* const words = p.fault ? nullptr : &words_[first];
   if (burst.write) {
     p.first = p.last = write_free_ = std::max(due, write_free_ + 1);
-    if (!p.fault) std::memcpy(words, burst.data.data(), burst.bytes);
+    if (words) std::memcpy(words, burst.data.data(), burst.bytes);
     writes_.push_back(p);
     return;
   }
   p.first = std::max(due, read_free_ + 1);
   p.last = read_free_ = p.first + burst.bytes / 8 - 1;
-  if (!p.fault) std::memcpy(p.data.data(), words, burst.bytes);
+  if (words) std::memcpy(p.data.data(), words, burst.bytes);
   reads_.push_back(p);
 }
 

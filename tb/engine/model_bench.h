@@ -1,4 +1,5 @@
-// Runs an EngineBackend on a memory in which every request takes the same time: the counterpart of tb/rtl's
+// Runs an EngineBackend on a memory in which every request takes the same time, and which answers addresses that it has
+// not with errors: the counterpart of tb/rtl's
 // engine_bench, without back-pressure. Jobs go through the registers.
 #pragma once
 #include <array>
@@ -46,7 +47,7 @@ class ModelBench : private EngineBackend::Host {
       : owned_(make(clock, *this)), backend(*owned_), words_(bytes / 4) {}
   std::uint32_t& word(std::uint32_t word_address) { return words_.at(word_address - kBase / 4); }
   /// Accesses at the present time, by the name of the register.
-  void set(const Reg& reg, std::uint32_t value);
+  void set(const Reg& reg, std::uint32_t value, unsigned strobes = 15);
   std::uint32_t get(const Reg& reg) { return backend.read(reg.offset(), now_); }
   /// Writes the job window.
   void window(const rtl::Job& job, std::uint32_t map_base, std::uint32_t map_words, std::uint32_t border);

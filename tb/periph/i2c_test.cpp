@@ -263,6 +263,9 @@ TEST_F(I2cTest, EmptyDataRegisterStretchesTheClock) {
   bus.write(kMdr, kIrs | kMst | kTrx | kStt | kStp);
   run_until(now() + 100 * kBit * 42'000);
   EXPECT_EQ(s.decoder.log, "SWw");
+  for (const unsigned lane : {1u, 2u, 3u}) bus.write(kDxr + lane, 0x77, 1);  // of which none is the data
+  run_until(now() + 20 * kBit * 42'000);
+  EXPECT_EQ(s.decoder.log, "SWw");
   const std::uint64_t k = next_edge();
   bus.write(kDxr, 0x99);
   run_until(edge(k + 9 * kBit));

@@ -131,6 +131,33 @@ TEST_F(UartTest, FcrEmptiesEachFifoAlone) {
   }
 }
 
+// PC16550D, 8.4: FCR0 must be 1 when other bits are written to, or they are not programmed.
+TEST_F(UartTest, WithoutFifoenTheOtherBitsOfFcrAreNotProgrammed) {
+  s.uart.receive('x');
+  bus.write(kIirFcr, 0xCE);  // would empty the FIFOs
+  EXPECT_EQ(bus.read(kLsr) & 1u, 1u);
+  EXPECT_EQ(bus.read(kData), 'x');
+  EXPECT_EQ(bus.read(kIirFcr) >> 6, 0u);
+}
+
+// The part's registers are bytes: a write of others of the word sends nothing and changes nothing.
+TEST_F(UartTest, OnlyTheLowestByteOfAWordReachesTheRegisters) {
+  bus.write(kIirFcr, 1);
+  bus.write(kIer, 5);
+  for (const std::uint32_t reg : {kData, kIer, kIirFcr})
+    for (const unsigned lane : {1u, 2u, 3u}) bus.write(reg + lane, 0xFF, 1);
+  bus.write(kData + 2, 0xFFFF, 2);
+  EXPECT_EQ(bus.read(kLsr) & 0x60, 0x60u);
+  EXPECT_EQ(bus.read(kIer), 5u);
+  EXPECT_EQ(bus.read(kIirFcr) >> 6, 3u);
+  bus.write(kLcr, 0x83);
+  bus.write(kData + 1, 0xFF, 1);
+  bus.write(kIer + 1, 0xFF, 1);
+  EXPECT_EQ(bus.read(kData), 13u);
+  EXPECT_EQ(bus.read(kIer), 0u);
+  bus.write(kLcr, 3);
+}
+
 TEST_F(UartTest, BytesLeftAfterAReadTimeOutAgain) {
   bus.write(kIirFcr, 0x81);  // FIFOs, interrupt from 8 bytes on
   bus.write(kIer, 1);

@@ -23,6 +23,14 @@ struct Burst {
   std::span<const std::uint8_t> data{};  ///< of a write; valid during the call
 };
 
+/// Of the job that a request belongs to what a message about the request needs. Bases and pitches in words, but
+/// `map_base` in bytes.
+struct JobPlace {
+  std::uint32_t number = 0;  ///< ENDED.COUNT at its end; 0: not known
+  std::uint8_t tag = 0;
+  std::uint32_t src_base = 0, src_pitch = 0, dst_base = 0, dst_pitch = 0, map_base = 0;
+};
+
 /// The outcome of a Burst.
 struct Answer {
   std::uint64_t tag = 0;
@@ -62,17 +70,21 @@ class EngineBackend {
   /// still change what it does.
   /// @return when to call again at the latest if nothing happens outside; kNever: not at all
   virtual Picoseconds run(Picoseconds now) = 0;
-  /// Accesses to the registers of EngineRegs, after run(now). Only words; a write to bits that are read-only has
-  /// no effect. What a write changes is visible to a read at a later edge. A backend whose own bus needs edges
-  /// for an access may have them at once, ahead of the clock. Afterwards the owner calls run(now) again.
+  /// Accesses to the registers of EngineRegs, after run(now). A read is of a word; a write changes the bytes of which
+  /// the bit in `strobes` is set, the lowest byte's first, and a command acts if its lowest byte is written. A write
+  /// to bits that are read-only or not implemented has no effect. What a write changes is visible to a read at a later
+  /// edge. A backend whose own bus needs edges for an access may have them at once, ahead of the clock. Afterwards the
+  /// owner calls run(now) again.
   virtual std::uint32_t read(std::uint32_t offset, Picoseconds now) = 0;
-  virtual void write(std::uint32_t offset, std::uint32_t word, Picoseconds now) = 0;
+  virtual void write(std::uint32_t offset, std::uint32_t word, unsigned strobes, Picoseconds now) = 0;
   /// An outcome, in the order of the requests of one identifier, and of the writes. A read's may be reported from its
   /// decision up to its first beat.
   virtual void answer(const Answer& answer) = 0;
   /// A write's may be reported from its decision on too. Otherwise it is reported at the acknowledgement, and a
   /// read's at its first beat at the earliest.
   virtual bool takes_answers_ahead() const { return false; }
+  /// During a call of Host::issue(): the job of the request, if the backend can tell.
+  virtual JobPlace job() const { return {}; }
   /// Needs edges: a job waits that may start, or one is under way.
   virtual bool busy() const = 0;
   /// As after power-up. The owner hands over no answers to requests from before.

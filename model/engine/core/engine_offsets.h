@@ -15,6 +15,7 @@ inline constexpr std::uint32_t kMode = 0x40, kSize = 0x44, kSrcBase = 0x48, kSrc
 /// Linear forms: first value, step of a pair, step of a row.
 inline constexpr std::uint32_t kA0 = 0x74, kA1 = 0x78, kA2 = 0x7C, kB0 = 0x80, kB1 = 0x84, kB2 = 0x88, kC0 = 0x8C,
                                kC1 = 0x90, kC2 = 0x94;
+inline constexpr std::uint32_t kRegisterWords = kC2 / 4 + 1;  ///< up to the last register
 
 }  // namespace fovea::engine::at
 

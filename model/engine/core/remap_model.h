@@ -37,6 +37,7 @@ class RemapModel {
   /// @param clock in which the engine, which must be idle, takes the job
   void start(const Job& job, std::uint64_t clock);
   bool idle() const { return state_ == State::kIdle; }
+  const Job& job() const { return job_; }  ///< that was started last
   /// Ends the job early; no effect while there is none.
   void abort(std::uint64_t clock);
   /// Works on. @param safe no answer that is not known arrives before this clock

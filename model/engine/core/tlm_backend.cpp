@@ -9,6 +9,23 @@ namespace {
 
 using namespace at;
 
+/// The bits of each register that keep what is written.
+const std::array<std::uint32_t, kRegisterWords>& kept_bits() {
+  static const std::array<std::uint32_t, kRegisterWords> kKept = [] {
+    std::array<std::uint32_t, kRegisterWords> bits{};
+    for (EngineRegs declared; const Reg* reg : declared.regs()) bits[reg->offset() / 4] = reg->writable();
+    return bits;
+  }();
+  return kKept;
+}
+
+std::uint32_t lanes_of(unsigned strobes) {
+  std::uint32_t lanes = 0;
+  for (unsigned n = 0; n < 4; ++n)
+    if (strobes >> n & 1) lanes |= 0xFFu << 8 * n;
+  return lanes;
+}
+
 }  // namespace
 
 void TlmBackend::reset() {
@@ -101,11 +118,17 @@ std::uint32_t TlmBackend::read(std::uint32_t offset, Picoseconds) {
       return bits::kBusy.put(running_) | bits::kQueued.put(waiting) | bits::kFull.put(waiting == kQueueDepth);
     }
     default:
-      return offset / 4 < kRegisters ? value(offset) : 0;
+      return offset / 4 < kRegisterWords ? value(offset) : 0;
   }
 }
 
-void TlmBackend::write(std::uint32_t offset, std::uint32_t word, Picoseconds now) {
+void TlmBackend::write(std::uint32_t offset, std::uint32_t word, unsigned strobes, Picoseconds now) {
+  if (offset >= kMode && offset / 4 < kRegisterWords) {
+    const std::uint32_t lanes = lanes_of(strobes) & kept_bits()[offset / 4];
+    cell(offset) = (cell(offset) & ~lanes) | (word & lanes);
+    return;
+  }
+  if (!(strobes & 1)) return;  // all that acts is in the lowest byte
   const std::uint64_t clock = clock_.edge_after(now);  // at whose end it takes effect
   switch (offset) {
     case kCtrl:
@@ -122,7 +145,7 @@ void TlmBackend::write(std::uint32_t offset, std::uint32_t word, Picoseconds now
     case kSubmit:
       return submit(static_cast<std::uint8_t>(bits::kTag.of(word)), clock);
     default:
-      if (offset >= kMode && offset / 4 < kRegisters) cell(offset) = word;
+      return;
   }
 }
 
@@ -136,6 +159,12 @@ void TlmBackend::abort(std::uint64_t clock) {
   if (queue_.empty()) return;
   queue_.clear();
   raise(bits::kDropped.mask());
+}
+
+JobPlace TlmBackend::job() const {
+  const Job& j = model_.job();
+  return {bits::kEndedCount.of(value(kEnded)) + 1, tag_,          j.src_base, j.src_pitch, j.dst_base,
+          j.dst_pitch,                             j.map_base};
 }
 
 /// The job of the window.

@@ -17,9 +17,10 @@ class TlmBackend : public EngineBackend, private RemapModel::Port {
 
   Picoseconds run(Picoseconds now) override;
   std::uint32_t read(std::uint32_t offset, Picoseconds now) override;
-  void write(std::uint32_t offset, std::uint32_t word, Picoseconds now) override;
+  void write(std::uint32_t offset, std::uint32_t word, unsigned strobes, Picoseconds now) override;
   void answer(const Answer& answer) override;
   bool takes_answers_ahead() const override { return true; }
+  JobPlace job() const override;
   bool busy() const override { return running_ || (enabled() && !queue_.empty()); }
   void reset() override;
 
@@ -29,7 +30,6 @@ class TlmBackend : public EngineBackend, private RemapModel::Port {
     std::uint8_t tag;
     std::uint64_t there;  ///< clock from which on it can be taken
   };
-  static constexpr std::size_t kRegisters = at::kC2 / 4 + 1;
 
   void issue(const Burst& burst, std::uint64_t clock) override;
   std::uint32_t& cell(std::uint32_t offset) { return registers_[offset / 4]; }
@@ -48,7 +48,7 @@ class TlmBackend : public EngineBackend, private RemapModel::Port {
   const Clock& clock_;
   Host& host_;
   RemapModel model_;
-  std::array<std::uint32_t, kRegisters> registers_{};
+  std::array<std::uint32_t, at::kRegisterWords> registers_{};
   Ring<Entry, kQueueDepth> queue_;
   std::uint64_t enabled_from_ = 0, idle_from_ = 0, beat_free_ = 0, answer_free_ = 0;
   bool running_ = false, interrupt_ = false;

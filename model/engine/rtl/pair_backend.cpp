@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "model/common/check.h"
 #include "model/engine/core/engine_offsets.h"
 
 namespace fovea::rtl {
@@ -22,22 +21,52 @@ std::string text(const char* format, unsigned long long a, unsigned long long b,
   return out;
 }
 
+std::string milliseconds(Picoseconds at) {
+  char out[40];
+  std::snprintf(out, sizeof out, "%.6f ms", static_cast<double>(at) * 1e-9);
+  return out;
+}
+
+/// The pixel whose luma is next to a byte (Cb Y0 Cr Y1). @param base, pitch of the picture, in words
+std::string pixel(std::uint32_t address, std::uint32_t base, std::uint32_t pitch) {
+  const std::uint32_t bytes = address - 4 * base, row = pitch ? bytes / (4 * pitch) : 0;
+  return text("pixel (%llu, %llu)", (bytes - row * 4 * pitch) / 2, row);
+}
+
+/// The job of a request, and where in its pictures the byte at `address` is.
+std::string place(unsigned stream, std::uint32_t address, const engine::JobPlace& job) {
+  if (job.number == 0) return "";
+  const std::string of = text(", job %llu (tag 0x%02llx), ", job.number, job.tag);
+  if (stream == engine::kMapReads) return of + text("word %llu of the map", (address - job.map_base) / 4, 0);
+  if (stream == engine::kSourceReads) return of + pixel(address, job.src_base, job.src_pitch) + " of the source";
+  return of + pixel(address, job.dst_base, job.dst_pitch) + " of the result";
+}
+
 }  // namespace
 
 PairBackend::PairBackend(Host& host, const Clock& clock, const Maker& owner, const Maker& twin,
-                         std::function<void(const std::string&)> on_difference)
+                         OnDifference on_difference)
     : host_(host), clock_(clock), on_difference_(std::move(on_difference)), owner_(owner(owner_side_)),
       twin_(twin(twin_side_)) {}
 
 PairBackend::~PairBackend() = default;
 
 /// Only the first: what follows from it differs too.
-void PairBackend::difference(const std::string& what) {
+void PairBackend::difference(const std::string& what, Picoseconds at) {
   if (different_) return;
   different_ = true;
-  const std::string line = "remap engine: RTL and model differ: " + what;
-  if (on_difference_) return on_difference_(line);
-  FOVEA_CHECK(false, line);
+  on_difference_("remap engine: RTL and model differ: " + what + "; at " + milliseconds(at), at);
+}
+
+/// @param job of the request, by whichever of the two can tell
+void PairBackend::difference(const std::string& what, unsigned stream, const Request& r, const engine::JobPlace& job) {
+  difference(kStreams[stream] + (", " + what) + place(stream, r.address, job), r.at);
+}
+
+void PairBackend::skip(std::uint64_t requests) {
+  if (requests == 0) return;
+  summary_.skipped += requests;
+  if (on_skipped) on_skipped(requests);
 }
 
 void PairBackend::issued(bool twin, const Burst& b, Picoseconds at) {
@@ -45,10 +74,11 @@ void PairBackend::issued(bool twin, const Burst& b, Picoseconds at) {
   Stream& s = streams_[n];
   if (twin) s.asking.push_back({b.tag, b.bytes, at});
   if (disturbed_ || different_) {
-    ++summary_.skipped;
+    skip(1);
   } else {
     (twin ? s.twin : s.owner)
-        .push_back({b.address, {b.data.begin(), b.data.end()}, b.bytes, at});
+        .push_back({b.address, {b.data.begin(), b.data.end()}, b.bytes, at, (twin ? twin_ : owner_)->job()});
+    if (twin && b.write && ++twin_writes_ == planted) s.twin.back().data.front() ^= 1;
     compare(n);
   }
   if (twin) return;
@@ -61,17 +91,22 @@ void PairBackend::issued(bool twin, const Burst& b, Picoseconds at) {
 void PairBackend::compare(unsigned stream) {
   Stream& s = streams_[stream];
   while (!s.owner.empty() && !s.twin.empty()) {
-    const Request a = std::move(s.owner.front()), b = std::move(s.twin.front());
+    Request a = std::move(s.owner.front());
+    const Request b = std::move(s.twin.front());
     s.owner.pop_front();
     s.twin.pop_front();
-    const std::string where = std::string(kStreams[stream]) + ", number " + std::to_string(s.compared);
+    const engine::JobPlace& job = a.job.number ? a.job : b.job;
+    const std::string where = "number " + std::to_string(s.compared);
     if (a.address != b.address || a.bytes != b.bytes)
       return difference(where + text(": 0x%08llx, %llu bytes; its twin 0x%08llx, %llu bytes", a.address,
-                                     a.bytes, b.address, b.bytes));
+                                     a.bytes, b.address, b.bytes),
+                        stream, a, job);
     const auto [x, y] = std::mismatch(a.data.begin(), a.data.end(), b.data.begin());
-    if (x != a.data.end())
-      return difference(where + text(": byte 0x%08llx is 0x%02llx; its twin's 0x%02llx",
-                                     a.address + static_cast<unsigned>(x - a.data.begin()), *x, *y));
+    if (x != a.data.end()) {
+      a.address += static_cast<unsigned>(x - a.data.begin());
+      return difference(where + text(": byte 0x%08llx is 0x%02llx; its twin's 0x%02llx", a.address, *x, *y), stream, a,
+                        job);
+    }
     ++s.compared;
     ++summary_.requests;
     const auto edge = [this](Picoseconds t) { return static_cast<std::int64_t>(clock_.edge_at_or_after(t)); };
@@ -86,7 +121,8 @@ void PairBackend::answer(const Answer& a) {
   if (open == open_.end()) return;
   const auto [stream, tag] = open->second;
   open_.erase(open);
-  if (!disturbed_) streams_[stream].replies.push_back({a.error, {a.data.begin(), a.data.end()}, a.first, a.last});
+  if (!disturbed_ && !different_)
+    streams_[stream].replies.push_back({a.error, {a.data.begin(), a.data.end()}, a.first, a.last});
   Answer own = a;
   own.tag = tag;
   owner_->answer(own);
@@ -97,7 +133,7 @@ void PairBackend::answer(const Answer& a) {
 void PairBackend::disturb() {
   disturbed_ = true;
   for (Stream& s : streams_) {
-    summary_.skipped += s.owner.size() + s.twin.size();
+    skip(s.owner.size() + s.twin.size());
     s.owner.clear();
     s.twin.clear();
   }
@@ -137,13 +173,15 @@ void PairBackend::settle() {
   for (unsigned n = 0; n < streams_.size(); ++n) {
     const Stream& s = streams_[n];
     if (!disturbed_ && !s.twin.empty())
-      difference(std::string(kStreams[n]) + ": " + std::to_string(s.twin.size()) + " that only the twin asked for");
+      difference(std::to_string(s.twin.size()) + " that only the twin asked for", n, s.twin.front(),
+                 s.twin.front().job);
   }
   if (twin_->busy()) return;
   for (unsigned n = 0; n < streams_.size(); ++n) {
     Stream& s = streams_[n];
     if (!disturbed_ && !s.owner.empty())
-      difference(std::string(kStreams[n]) + ": " + std::to_string(s.owner.size()) + " that the twin did not ask for");
+      difference(std::to_string(s.owner.size()) + " that the twin did not ask for", n, s.owner.front(),
+                 s.owner.front().job);
     const std::uint64_t compared = s.compared;
     s = {};
     s.compared = compared;
@@ -161,16 +199,17 @@ Picoseconds PairBackend::run(Picoseconds now) {
 
 std::uint32_t PairBackend::read(std::uint32_t offset, Picoseconds now) {
   const std::uint32_t word = owner_->read(offset, now), other = twin_->read(offset, now);
-  const bool lasting = offset == at::kId || offset == at::kCtrl || offset == at::kEnables || offset >= at::kMode;
+  const bool lasting = offset == at::kId || offset == at::kCtrl || offset == at::kEnables ||
+                       offset == at::kSubmit || offset >= at::kMode;
   if (lasting && word != other)
-    difference(text("register 0x%02llx reads 0x%08llx; its twin's 0x%08llx", offset, word, other));
+    difference(text("register 0x%02llx reads 0x%08llx; its twin's 0x%08llx", offset, word, other), now);
   return word;
 }
 
-void PairBackend::write(std::uint32_t offset, std::uint32_t word, Picoseconds now) {
-  if (offset == at::kCtrl && engine::bits::kAbort.of(word)) disturb();
-  owner_->write(offset, word, now);
-  twin_->write(offset, word, now);
+void PairBackend::write(std::uint32_t offset, std::uint32_t word, unsigned strobes, Picoseconds now) {
+  if (offset == at::kCtrl && strobes & 1 && engine::bits::kAbort.of(word)) disturb();
+  owner_->write(offset, word, strobes, now);
+  twin_->write(offset, word, strobes, now);
 }
 
 void PairBackend::reset() {

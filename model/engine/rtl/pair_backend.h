@@ -32,19 +32,25 @@ struct PairSummary {
 class PairBackend : public engine::EngineBackend {
  public:
   using Maker = std::function<std::unique_ptr<engine::EngineBackend>(Host&)>;
-  /// @param on_difference called with the first difference, once; by default the process ends with status 4
-  PairBackend(Host& host, const Clock& clock, const Maker& owner, const Maker& twin,
-              std::function<void(const std::string&)> on_difference = {});
+  /// A sentence about the first difference, and when the owner asked, or was asked, for it. From then on the twin is
+  /// fed zeros and nothing is compared.
+  using OnDifference = std::function<void(const std::string& what, Picoseconds at)>;
+  PairBackend(Host& host, const Clock& clock, const Maker& owner, const Maker& twin, OnDifference on_difference);
   ~PairBackend() override;
 
   Picoseconds run(Picoseconds now) override;
   std::uint32_t read(std::uint32_t offset, Picoseconds now) override;
-  void write(std::uint32_t offset, std::uint32_t word, Picoseconds now) override;
+  void write(std::uint32_t offset, std::uint32_t word, unsigned strobes, Picoseconds now) override;
   void answer(const engine::Answer& answer) override;
   bool busy() const override { return owner_->busy() || twin_->busy(); }
   void reset() override;
+  engine::JobPlace job() const override { return owner_->job(); }
   /// Called for each pair of equal requests: clocks that the twin asked later.
   std::function<void(std::int64_t lag)> on_compared;
+  /// Called when requests behind an error or an abort are not compared.
+  std::function<void(std::uint64_t requests)> on_skipped;
+  /// For tests of what a run says of a difference: the write of the twin, counted from 1, of which a bit is wrong.
+  std::uint64_t planted = 0;
   const PairSummary& summary() const { return summary_; }
   /// "lag_clocks,requests" and a line for each difference in time that occurred.
   std::string table() const;
@@ -55,6 +61,7 @@ class PairBackend : public engine::EngineBackend {
     std::vector<std::uint8_t> data;
     unsigned bytes;
     Picoseconds at;
+    engine::JobPlace job;
   };
   struct Reply {
     bool error;
@@ -91,11 +98,13 @@ class PairBackend : public engine::EngineBackend {
   bool feed(Picoseconds now);
   void disturb();
   void settle();
-  void difference(const std::string& what);
+  void skip(std::uint64_t requests);
+  void difference(const std::string& what, Picoseconds at);
+  void difference(const std::string& what, unsigned stream, const Request& request, const engine::JobPlace& job);
 
   Host& host_;
   const Clock& clock_;
-  const std::function<void(const std::string&)> on_difference_;
+  const OnDifference on_difference_;
   Side owner_side_{*this, false}, twin_side_{*this, true};
   std::unique_ptr<EngineBackend> owner_, twin_;
   std::array<Stream, 3> streams_;
@@ -104,7 +113,7 @@ class PairBackend : public engine::EngineBackend {
     std::uint64_t tag;  // the owner's own; those need not differ from each other
   };
   std::map<std::uint64_t, Open> open_;  // requests of the owner without an answer, by the tag that the host has
-  std::uint64_t tags_ = 0;
+  std::uint64_t tags_ = 0, twin_writes_ = 0;
   bool disturbed_ = false, different_ = false;
   PairSummary summary_;
 };

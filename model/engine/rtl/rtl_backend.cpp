@@ -60,11 +60,12 @@ struct RtlBackend::State {
   bool busy() const { return top.busy_o || !lite.idle() || !memory.idle(); }
   WaveFile::Events events() const;
   void finish_access();
-  void defect(const std::string& what) const {
+  void defect(const std::string& what) {
     if (options.on_defect) {
       options.on_defect(what);
       return;
     }
+    if (waves) waves->close();  // the process ends without destructors
     FOVEA_CHECK(false, what);
   }
 
@@ -217,11 +218,11 @@ std::uint32_t RtlBackend::read(std::uint32_t offset, Picoseconds now) {
   return s.top.s_r_data_o;
 }
 
-void RtlBackend::write(std::uint32_t offset, std::uint32_t word, Picoseconds now) {
+void RtlBackend::write(std::uint32_t offset, std::uint32_t word, unsigned strobes, Picoseconds now) {
   State& s = *s_;
   s.done = std::max(s.done, now);
   s.finish_access();
-  s.lite.write(offset, word, 15);
+  s.lite.write(offset, word, strobes);
 }
 
 void RtlBackend::answer(const engine::Answer& a) {
@@ -233,6 +234,9 @@ void RtlBackend::reset() { s_->reset(); }
 std::uint64_t RtlBackend::clocks() const { return s_->clocks; }
 void RtlBackend::finish() {
   if (s_->waves) s_->waves->close();
+}
+void RtlBackend::finish_at(Picoseconds at) {
+  if (s_->waves) s_->waves->close_at(at);
 }
 
 }  // namespace fovea::rtl

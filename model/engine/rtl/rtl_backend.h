@@ -46,7 +46,7 @@ class RtlBackend : public engine::EngineBackend {
 
   Picoseconds run(Picoseconds now) override;
   std::uint32_t read(std::uint32_t offset, Picoseconds now) override;
-  void write(std::uint32_t offset, std::uint32_t word, Picoseconds now) override;
+  void write(std::uint32_t offset, std::uint32_t word, unsigned strobes, Picoseconds now) override;
   void answer(const engine::Answer& answer) override;
   bool busy() const override;
   void reset() override;
@@ -54,6 +54,8 @@ class RtlBackend : public engine::EngineBackend {
   std::uint64_t clocks() const;
   /// Ends the file of waveforms, if there is one.
   void finish();
+  /// The same at a time that lies ahead, or with the backend.
+  void finish_at(Picoseconds at);
 
  private:
   struct State;

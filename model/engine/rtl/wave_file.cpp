@@ -49,7 +49,7 @@ void WaveFile::close() {
 
 void WaveFile::dump(Picoseconds at) {
   if (begin_ == kNever || at <= dumped_ || !file_->fst.isOpen()) return;
-  if (options_.length != kNever && at > begin_ + options_.length) return close();
+  if (at > end_ || (options_.length != kNever && at > begin_ + options_.length)) return close();
   file_->fst.dump(at);
   dumped_ = at;
 }

@@ -24,6 +24,7 @@ class WaveFile {
   void low(Picoseconds next_edge);
   void high(Picoseconds edge, const Events& events);
   void close();
+  void close_at(Picoseconds at) { end_ = at; }  ///< at a time that lies ahead
 
  private:
   struct File;
@@ -32,7 +33,7 @@ class WaveFile {
   Waves options_;
   std::unique_ptr<File> file_;
   std::uint64_t left_;
-  Picoseconds begin_ = kNever, dumped_ = 0, edge_ = 0;
+  Picoseconds begin_ = kNever, end_ = kNever, dumped_ = 0, edge_ = 0;
 };
 
 }  // namespace fovea::rtl

@@ -39,6 +39,7 @@ void CommandChecker::command(Command c, unsigned bank, std::uint32_t row, std::u
   if (c == Command::kPde || c == Command::kSre) return sleep(c == Command::kSre, now);
   apart("tXP", pdx_, now, sheet_.tXP, bank);
   apart("tXSNR", srx_, now, sheet_.tXSNR, bank);
+  if (slept_ && sheet_.refresh_after_sleep && c != Command::kRef) complain("REF after self-refresh", clock, bank, 0);
   const bool whole_rank = c == Command::kPreAll || c == Command::kRef;
   if (!whole_rank && bank >= sheet_.banks) {
     complain("no such bank", clock, bank, 0);
@@ -153,6 +154,8 @@ void CommandChecker::sleep(bool self_refresh, std::int64_t now) {
     for (unsigned b = 0; b < sheet_.banks; ++b)
       if (banks_[b].open)
         complain("self-refresh with open bank", static_cast<std::uint64_t>(now), b, 0);
+    if (slept_ && sheet_.refresh_before_sleep)
+      complain("REF between self-refreshes", static_cast<std::uint64_t>(now), 0, 0);
     apart("tRP", pre_, now, sheet_.tRP, 0);
     apart("tRPA", prea_, now, sheet_.tRP + (sheet_.banks == 8 ? 1 : 0), 0);
     apart("tRFC", ref_, now, sheet_.tRFC, 0);
@@ -166,10 +169,12 @@ void CommandChecker::wake(bool self_refresh, std::int64_t now) {
   if (state_ != (self_refresh ? Cke::kSelfRefresh : Cke::kPowerDown))
     complain("exit without entry", static_cast<std::uint64_t>(now), 0, 0);
   apart("tCKE", cke_, now, sheet_.tCKE, 0);
+  if (self_refresh) apart("tRFC in self-refresh", cke_, now, sheet_.tSR, 0);
   (self_refresh ? srx_ : pdx_) = cke_ = now;
   if (self_refresh) {  // it refreshed itself
     last_ref_ = counted_to_ = static_cast<std::uint64_t>(now);
     owed_ = 0;
+    slept_ = true;
   }
   state_ = Cke::kHigh;
 }
@@ -185,6 +190,7 @@ void CommandChecker::refresh(std::int64_t now) {
   if (owed_ != 0) --owed_;
   last_ref_ = clock;
   ref_ = now;
+  slept_ = false;
 }
 
 /// At a REF: every interval that ended owes one. A part in self-refresh owes none.

@@ -90,6 +90,7 @@ class CommandChecker {
   std::array<std::int64_t, 4> acts_{kLongAgo, kLongAgo, kLongAgo, kLongAgo};  // newest first
   std::int64_t rd_ = kLongAgo, wr_ = kLongAgo, ref_ = kLongAgo, pre_ = kLongAgo, prea_ = kLongAgo,
                previous_ = kLongAgo, cke_ = kLongAgo, pdx_ = kLongAgo, srx_ = kLongAgo;
+  bool slept_ = false;  // no REF has come since the last self-refresh
   enum class Cke { kHigh, kPowerDown, kSelfRefresh } state_ = Cke::kHigh;
   std::uint64_t last_ref_ = 0, largest_gap_ = 0;
   std::uint64_t owed_ = 0, counted_to_ = 0;  // refreshes, by intervals that ended up to this clock

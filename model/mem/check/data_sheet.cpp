@@ -127,6 +127,8 @@ DataSheet in_clocks(const Part& p, Frequency clock, unsigned CL) {
   s.tXSRD = p.tXSRD;
   s.tREFI = down(p.tREFI, clock);
   s.counts_postponed = true;
+  s.refresh_before_sleep = !p.mobile;
+  s.tSR = p.mobile ? s.tRFC : 0;
   s.tRASmax = down(p.tRASmax, clock);
   return s;
 }

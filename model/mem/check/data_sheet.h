@@ -42,6 +42,9 @@ struct DataSheet {
   unsigned banks = 8;
   bool mobile = false;         ///< mobile DDR: WL = 1, no tRTP, a read's own data bounds RD to WR
   unsigned postponed_max = 8;  ///< so at most 9 tREFI between two REF
+  unsigned tSR = 0;            ///< shortest self-refresh; 0: tCKE alone
+  bool refresh_before_sleep = false;  ///< a REF at least between two self-refreshes (DDR2, not mobile DDR)
+  bool refresh_after_sleep = false;   ///< the first command behind a self-refresh is a REF
   bool counts_postponed = false;  ///< more than postponed_max refreshes owed at once is an offence too
 };
 

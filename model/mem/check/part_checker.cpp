@@ -41,17 +41,18 @@ void PartChecker::complained(const Complaint& c) {
                          : c.rule == kPostponed
                              ? ", " + std::to_string(c.missing) + " more than the 8 of"
                              : ", " + margin(c.missing) + (late ? " beyond" : " short of");
-  on_warning(c, c.rule + by + (c.missing == 0 ? " at " : " ") + part_.name + " at " +
+  on_warning(c, c.rule + by + (c.missing == 0 ? ", against the sheet of " : " ") + part_.name + " at " +
                     megahertz(clock_));
 }
 
 std::string PartChecker::text() const {
   std::string out;
   for (const auto& [rule, w] : warnings_) {
-    const std::string worst = rule == kPostponed
-                                  ? std::to_string(w.worst_clocks) + " more than the 8 of "
-                                  : margin(w.worst_clocks) + " short of ";
-    out += rule + ": " + std::to_string(w.count) + " times, at worst " + worst + part_.name + " at " +
+    const std::string worst = w.worst_clocks == 0 ? "against the sheet of "
+                              : rule == kPostponed
+                                  ? "at worst " + std::to_string(w.worst_clocks) + " more than the 8 of "
+                                  : "at worst " + margin(w.worst_clocks) + " short of ";
+    out += rule + ": " + std::to_string(w.count) + " times, " + worst + part_.name + " at " +
            megahertz(clock_) + "\n";
   }
   return out;

@@ -17,7 +17,7 @@ namespace fovea::mem {
       wake(at);
     }
     std::uint64_t from = command_free_;
-    if (refresh_.owed() == 0) {
+    if (refresh_.owed() == 0 && !refresh_.cycle_begun()) {
       if (config_.low_power != LowPower::kOff &&
           fall_asleep(std::min(until, refresh_.next_expiry())))
         continue;
@@ -120,6 +120,9 @@ bool DdrController::fall_asleep(std::uint64_t until) {
   lose_unrefreshed(config_, ddr_.edge(at) - power_.entered(), retention_, store_);
   device_.put_off_reads(at + t.nXSRD);
   refresh_.restart(at);
+  // A mobile part gets a REF before anything else (SPRUH82C 14.2.8). For DDR2 TI's manuals name none, though the part
+  // wants one before it sleeps again (JESD79-2): that there is none is assumed, and the data sheet's checker says so.
+  if (t.mobile) refresh_.begin_idle_cycle();
   update_deadlines();
 }
 

@@ -31,7 +31,7 @@ class RefreshManager {
   /// Clock at which the present interval ends; kNoClock without refresh.
   std::uint64_t next_expiry() const { return next_expiry_; }
   unsigned owed() const { return owed_; }
-  /// PREA was issued, REF was not yet.
+  /// PREA was issued, or all rows are closed since a self-refresh; REF was not yet.
   bool cycle_begun() const { return cycle_begun_; }
   /// A refresh goes before something now, whatever the clock.
   bool urgent() const { return urgent_; }
