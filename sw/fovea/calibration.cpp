@@ -4,12 +4,15 @@
 #include <fmt/ranges.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <initializer_list>
-#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/safe_yaml.h"
 
 namespace fovea::app {
 namespace {
@@ -22,14 +25,15 @@ class Reader {
  public:
   explicit Reader(const fs::path& file) : file_(file) {
     std::string text = read_file(file, kMaxSettingsBytes);
-    // OpenCV's first line, "%YAML:1.0", is not a valid YAML directive.
-    if (text.starts_with("%YAML")) text.erase(0, text.find('\n'));
+    // OpenCV's first line, "%YAML:1.0", is not a valid YAML directive. The lines keep their numbers.
+    if (text.starts_with("%YAML")) text.erase(0, std::min(text.find('\n'), text.size()));
     try {
-      root_ = YAML::Load(text);
-    } catch (const YAML::Exception& e) {
-      fail("it is not valid YAML: " + one_line(e.msg));
+      root_ = load_yaml(text);
+    } catch (const YamlFault& e) {
+      fail(fmt::format("line {}: {}", e.line, e.what()));
     }
     if (!root_.IsMap()) fail("it has no camera matrix");
+    check_model();
   }
 
   [[noreturn]] void fail(const std::string& why) const {
@@ -52,6 +56,32 @@ class Reader {
   }
 
  private:
+  /// Four coefficients mean something else in each model, so a file that names another one is not read. Names of:
+  /// ROS, Kalibr and OpenVINS (`distortion_model`, `camera_model`), camodocal and VINS (`model_type`), ORB-SLAM3
+  /// (`Camera.type`) and OpenCV's sample program (`fisheye_model: 0` or `1`).
+  void check_model() const {
+    constexpr std::string_view kFisheye[] = {"equidistant",   "equi",           "fisheye",
+                                             "kannalabrandt", "kannalabrandt8", "kb4"};
+    bool named = false;
+    for (const char* key : {"distortion_model", "distortion_type", "model_type", "Camera.type", "fisheye_model",
+                            "camera_model"}) {
+      const YAML::Node node = root_[key];
+      if (!node || !node.IsScalar()) continue;
+      std::string name;
+      for (const char c : node.Scalar())
+        if (std::isalnum(static_cast<unsigned char>(c)))
+          name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      const bool flag = std::string_view(key) == "fisheye_model" && (name == "1" || name == "true");
+      if (flag || std::find(std::begin(kFisheye), std::end(kFisheye), name) != std::end(kFisheye)) {
+        named = true;
+        continue;
+      }
+      // Kalibr's `pinhole` says how it is projected, and only the model beside it how it is distorted.
+      if (name == "pinhole" && named) continue;
+      fail(fmt::format("line {}: its lens model is '{}: {}', not that of a fisheye (Kannala-Brandt)",
+                       node.Mark().line + 1, key, one_line(node.Scalar(), 60)));
+    }
+  }
   void append(const YAML::Node& node, const char* name, std::vector<double>& out) const {
     if (node.IsSequence()) {
       for (const auto& item : node) append(item, name, out);

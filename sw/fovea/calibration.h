@@ -15,8 +15,8 @@ struct Calibration {
 
 /// Reads YAML of OpenCV's FileStorage (`%YAML:1.0`, `!!opencv-matrix`) or plain YAML: the matrix
 /// `camera_matrix` or `K`; four fish-eye coefficients `dist_coeffs`, `distortion_coefficients` or
-/// `D`; and `resolution`, `image_size`, or `image_width` with `image_height`. Other keys are
-/// ignored. @throws UserError that names the file
+/// `D`; and `resolution`, `image_size`, or `image_width` with `image_height`. A file that names another lens model
+/// (`distortion_model: plumb_bob`) is refused. Other keys are ignored. @throws UserError that names the file
 Calibration read_calibration(const std::filesystem::path& file);
 
 /// Sets camera.kb and lens.kb, with their sizes, from camera.calibration and lens.calibration

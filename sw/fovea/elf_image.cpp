@@ -63,8 +63,8 @@ class ElfFile {
   }
   Elf* elf() const { return elf_.get(); }
 
-  /// The entry of an executable for this core.
-  std::uint32_t checked_entry() const {
+  /// The entry of an executable for this core; check_entry() tells whether it is in the program.
+  std::uint32_t entry_of_header() const {
     GElf_Ehdr header{};
     if (!gelf_getehdr(elf(), &header)) fail(kCut);
     // Checked first: for a program built for the host, "ELF64" would not be a helpful message.
@@ -79,7 +79,38 @@ class ElfFile {
                        header.e_type == ET_REL ? "an object file" : "no executable", kAllowed));
     if (const std::string why = unfit_flags(header.e_flags); !why.empty())
       fail(fmt::format("{}; {}", why, kAllowedTarget));
+    if (header.e_version != EV_CURRENT || header.e_ident[EI_VERSION] != EV_CURRENT)
+      fail(fmt::format("it is of version {} of ELF; {}", header.e_version, kAllowed));
+    if (header.e_phnum != 0 && header.e_phentsize != sizeof(Elf32_Phdr))
+      fail(fmt::format("{}: an entry of the program header has {} bytes; allowed: {}", kCut, header.e_phentsize,
+                       sizeof(Elf32_Phdr)));
     return static_cast<std::uint32_t>(header.e_entry);
+  }
+
+  /// The core begins at the entry with its MMU off, so that is a physical address, where the file has put something.
+  /// Bit 0 selects the Thumb state (ELF for the Arm Architecture, "Entry point"), which must be that of the code there
+  /// as far as the file's mapping symbols tell.
+  void check_entry(std::uint32_t entry, const std::vector<ElfSegment>& segments) const {
+    const bool thumb = (entry & 1) != 0;
+    const std::uint32_t address = entry & ~1u;
+    const auto home = std::find_if(segments.begin(), segments.end(), [&](const ElfSegment& s) {
+      return address - s.address < s.data.size();
+    });
+    if (home == segments.end())
+      fail(fmt::format("its entry point 0x{:08x} is in no segment; allowed: a physical address in the bytes of one",
+                       entry));
+    if (!thumb && address % 4 != 0)
+      fail(fmt::format("its entry point 0x{:08x} is no address of an ARM instruction; allowed: a multiple of 4, or an "
+                       "odd address for Thumb code",
+                       entry));
+    const std::uint32_t at = address - home->address + home->virtual_address;
+    const auto above = code_kinds_.upper_bound(at);
+    if (above == code_kinds_.begin() || std::prev(above)->first < home->virtual_address) return;
+    const char kind = std::prev(above)->second;
+    if (kind == (thumb ? 'a' : 't'))
+      fail(fmt::format("its entry point 0x{:08x} selects {} state, but the code there is {}; allowed: an odd address "
+                       "for Thumb code, an even one for ARM code",
+                       entry, thumb ? "Thumb" : "ARM", thumb ? "ARM" : "Thumb"));
   }
 
   /// What is to be loaded, in the file's order.
@@ -117,7 +148,7 @@ class ElfFile {
     if (!why.empty()) fail(fmt::format("{}; {}", why, kAllowedTarget));
   }
 
-  void add_symbols(Elf_Scn* section, const GElf_Shdr& table, std::vector<ElfSymbol>& out) const {
+  void add_symbols(Elf_Scn* section, const GElf_Shdr& table, std::vector<ElfSymbol>& out) {
     Elf_Data* data = elf_getdata(section, nullptr);
     if (!data || table.sh_entsize == 0) fail(fmt::format("{}: the symbol table", kCut));
     std::string source;  // of the local symbols that follow
@@ -128,6 +159,8 @@ class ElfFile {
       const unsigned type = GELF_ST_TYPE(s.st_info);
       if (type == STT_FILE) source = text ? one_line(text, std::string::npos) : "";
       // '$a', '$t' and '$d' mark instruction sets and data inside a section; they are not symbols.
+      if (text && text[0] == '$' && text[1] != '\0' && (text[2] == '\0' || text[2] == '.') && s.st_shndx != SHN_UNDEF)
+        code_kinds_[static_cast<std::uint32_t>(s.st_value)] = text[1];
       if (!text || *text == '\0' || *text == '$' || s.st_shndx == SHN_UNDEF) continue;
       if (type != STT_FUNC && type != STT_OBJECT && type != STT_NOTYPE) continue;
       const auto address = static_cast<std::uint32_t>(s.st_value);
@@ -150,7 +183,9 @@ class ElfFile {
               [](const auto& a, const auto& b) { return a.address < b.address; });
     for (std::size_t i = 1; i < sorted.size(); ++i)
       if (std::uint64_t{sorted[i - 1].address} + sorted[i - 1].memory_size > sorted[i].address)
-        fail(fmt::format("segments {} and {} overlap", sorted[i - 1].index, sorted[i].index));
+        fail(fmt::format("segments {} and {} overlap in their physical addresses, {} and {}", sorted[i - 1].index,
+                         sorted[i].index, range(sorted[i - 1].address, sorted[i - 1].memory_size),
+                         range(sorted[i].address, sorted[i].memory_size)));
   }
   /// A symbol without a type, as of an assembler's label, in a section of code.
   bool labels_code(const GElf_Sym& s) const {
@@ -162,6 +197,7 @@ class ElfFile {
 
   std::string name_, bytes_;
   std::unique_ptr<Elf, ElfEnd> elf_;
+  std::map<std::uint32_t, char> code_kinds_;  // 'a', 't' or 'd' from a virtual address on
 };
 
 /// Leaves `file` only where it is needed to tell symbols apart, and makes `shown` such that the two do. In the order of
@@ -201,8 +237,8 @@ std::string demangled(const std::string& name) {
 ElfImage ElfImage::load(const std::filesystem::path& path) {
   ElfImage image;
   image.file_ = path.string();
-  const ElfFile file(path);
-  image.entry_ = file.checked_entry();
+  ElfFile file(path);
+  image.entry_ = file.entry_of_header();
   image.segments_ = file.segments();
   std::size_t section_names = 0;
   const bool named = elf_getshdrstrndx(file.elf(), &section_names) == 0;
@@ -219,6 +255,7 @@ ElfImage ElfImage::load(const std::filesystem::path& path) {
     if (table.sh_type == SHT_ARM_ATTRIBUTES) file.check_attributes(section);
     if (table.sh_type == SHT_SYMTAB) file.add_symbols(section, table, image.symbols_);
   }
+  file.check_entry(image.entry_, image.segments_);
   std::sort(image.symbols_.begin(), image.symbols_.end(), [](const auto& a, const auto& b) {
     // At one address a symbol with a size comes first; then by name, so that the result is
     // deterministic.

@@ -48,7 +48,7 @@ class ElfImage {
  public:
   /// @throws UserError of one line: missing, not an ELF file, wrong class, byte order, machine or
   /// type, code for another architecture than ARMv5TEJ, truncated, no segments, overlapping
-  /// segments
+  /// segments, an entry point outside them or of the other instruction set
   static ElfImage load(const std::filesystem::path& file);
 
   const std::string& file() const { return file_; }

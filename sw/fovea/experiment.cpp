@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
-#include <yaml-cpp/yaml.h>
 
 #include <limits>
-#include <sstream>
 
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/safe_yaml.h"
 
 namespace fovea::app {
 namespace {
@@ -38,31 +37,25 @@ std::string list_item(const std::string& item) {
   return out + "\"";
 }
 
-/// Converts the parser's events into dotted keys. It uses events instead of a node tree, so that
-/// aliases are refused before they can expand and repeated keys are noticed.
+/// Converts the parser's events into dotted keys. A key may be written in several ways (`a: {b: 1}`, `a.b: 1`), so it
+/// is here that repeated ones are noticed.
 class Flattener : public YAML::EventHandler {
  public:
   explicit Flattener(const fs::path& file) : file_(file) {}
   std::vector<Entry> take() { return std::move(entries_); }
 
-  void OnDocumentStart(const YAML::Mark& mark) override {
-    if (++documents_ > 1) fail(mark, "only one YAML document is allowed in an experiment");
-  }
+  void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}  // is refused before
 
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
     if (levels_.empty()) fail(mark, kTopLevel);
-    if (anchor) refuse_alias(mark);
     if (levels_.back().sequence || levels_.back().expect_key)
       fail(mark, fmt::format("key '{}': empty entry", prefix()));
     fail(mark, fmt::format("key '{}' has no value", prefix()));
   }
 
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse_alias(mark); }
-
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                const std::string& value) override {
-    if (anchor) refuse_alias(mark);
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& value) override {
     check_tag(mark, tag);
     if (levels_.empty()) fail(mark, kTopLevel);
     Level& level = levels_.back();
@@ -79,9 +72,9 @@ class Flattener : public YAML::EventHandler {
     }
   }
 
-  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                        YAML::EmitterStyle::value) override {
-    begin(mark, tag, anchor);
+    begin(mark, tag);
     if (levels_.empty()) fail(mark, kTopLevel);
     entry_ = {prefix(), "", {}, levels_.back().line};
     levels_.push_back({true, false, "", line_of(mark)});
@@ -95,9 +88,9 @@ class Flattener : public YAML::EventHandler {
     levels_.back().expect_key = true;
   }
 
-  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                   YAML::EmitterStyle::value) override {
-    begin(mark, tag, anchor);
+    begin(mark, tag);
     if (levels_.size() >= kMaxDepth)
       fail(mark, fmt::format("nested deeper than the {} levels allowed", kMaxDepth));
     levels_.push_back({false, true, "", line_of(mark)});
@@ -127,16 +120,12 @@ class Flattener : public YAML::EventHandler {
   [[noreturn]] void fail(const YAML::Mark& mark, const std::string& what) {
     fail(line_of(mark), what);
   }
-  [[noreturn]] void refuse_alias(const YAML::Mark& mark) {
-    fail(mark, "YAML anchors and aliases (&name, *name) are not allowed; write the value out");
-  }
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
     // "?" is the tag of a plain scalar, "!" that of a quoted one.
     if (!tag.empty() && tag != "?" && tag != "!")
       fail(mark, "YAML tags are not allowed ('" + tag + "')");
   }
-  void begin(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
-    if (anchor) refuse_alias(mark);
+  void begin(const YAML::Mark& mark, const std::string& tag) {
     check_tag(mark, tag);
     if (levels_.empty()) return;
     if (levels_.back().sequence)
@@ -158,7 +147,6 @@ class Flattener : public YAML::EventHandler {
   }
 
   fs::path file_;
-  unsigned documents_ = 0;
   std::vector<Level> levels_;
   Entry entry_;
   std::vector<Entry> entries_;
@@ -166,15 +154,11 @@ class Flattener : public YAML::EventHandler {
 };
 
 std::vector<Entry> parse(const fs::path& file) {
-  std::istringstream text(read_file(file, kMaxSettingsBytes));
   Flattener flattener(file);
   try {
-    YAML::Parser parser(text);
-    while (parser.HandleNextDocument(flattener)) {
-    }
-  } catch (const YAML::Exception& e) {
-    const unsigned line = e.mark.is_null() ? 1 : static_cast<unsigned>(e.mark.line + 1);
-    throw UserError(at(file, line) + ": not valid YAML: " + one_line(e.msg));
+    each_yaml_event(read_file(file, kMaxSettingsBytes), flattener);
+  } catch (const YamlFault& e) {
+    throw UserError(at(file, static_cast<unsigned>(e.line)) + ": " + one_line(e.what()));
   }
   return flattener.take();
 }

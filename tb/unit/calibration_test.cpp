@@ -71,6 +71,40 @@ TEST_F(CalibrationTest, ErrorsNameTheFileAndWhatIsAllowed) {
   EXPECT_THAT(user_error([&] { read_calibration(dir / "none.yaml"); }), HasSubstr("none.yaml"));
 }
 
+// Four coefficients are a lens of another kind if the file says so; the numbers cannot tell.
+TEST_F(CalibrationTest, AnotherLensModelIsRefusedByItsName) {
+  const std::string lens = std::string(kMatrix) + "D: [0.2, 0.2, 0, 0]\n";
+  EXPECT_THAT(error(lens + "distortion_model: plumb_bob\n"),
+              AllOf(HasSubstr("c.yaml"), HasSubstr("line 3: its lens model is 'distortion_model: plumb_bob'"),
+                    HasSubstr("allowed")));
+  for (const char* other : {"distortion_model: rational_polynomial", "distortion_model: radtan", "camera_model: omni",
+                            "model_type: MEI", "fisheye_model: 0", "camera_model: pinhole", "Camera.type: \"PinHole\"",
+                            "camera_model: pinhole\ndistortion_model: radtan"})
+    EXPECT_THAT(error(lens + other + "\n"), HasSubstr("its lens model is '")) << other;
+  for (const char* fisheye : {"distortion_model: equidistant", "distortion_model: fisheye",
+                              "model_type: KANNALA_BRANDT", "Camera.type: \"KannalaBrandt8\"", "fisheye_model: 1",
+                              "camera_model: pinhole\ndistortion_model: equidistant", "camera_name: davis"})
+    EXPECT_EQ(read(lens + fisheye + "\n").kb[4], 0.2) << fisheye;
+}
+
+// An alias can make a short file endless, or as large as memory.
+TEST_F(CalibrationTest, WhatAnAliasWouldExpandToIsNeverBuilt) {
+  EXPECT_THAT(error("K: &a [*a, 300, 0, 480, 0, 300, 320, 0, 0, 1]\nD: [0, 0, 0, 0]\n"),
+              HasSubstr("line 1: YAML anchors and aliases"));
+  std::string bomb = "a0: &a0 [1,1,1,1,1,1,1,1,1,1]\n";
+  for (int n = 1; n < 12; ++n) {
+    bomb += "a" + std::to_string(n) + ": &a" + std::to_string(n) + " [";
+    for (int k = 0; k < 10; ++k) bomb += (k ? ",*a" : "*a") + std::to_string(n - 1);
+    bomb += "]\n";
+  }
+  EXPECT_THAT(error(bomb + "K: *a11\n"), HasSubstr("YAML anchors and aliases"));
+  EXPECT_THAT(error(std::string("K: ") + std::string(17, '[') + std::string(17, ']') + "\n"),
+              HasSubstr("nested deeper than the 16 levels"));
+  EXPECT_THAT(error(std::string(kMatrix) + "---\nD: [0, 0, 0, 0]\n"), HasSubstr("line 2: only one YAML document"));
+  EXPECT_THAT(error(std::string(kMatrix) + "D: [0, 0, 0, 0]\nD: [1, 0, 0, 0]\n"),
+              HasSubstr("line 3: key 'D' is written twice (first in line 2)"));
+}
+
 struct CameraParams : ParamGroup {
   CameraParams() : ParamGroup("camera") {}
   ListParam kb{*this, "kb", {1, 1, 1, 1, 0, 0, 0, 0}, {8}, "lens", Origin::kChoice, ""};

@@ -19,7 +19,8 @@ const std::string kObject = FIXTURE_OBJECT;    // not linked
 
 // ELF32 file header, byte offsets (System V ABI).
 constexpr std::size_t kClass = 4, kData = 5, kMachine = 18, kPhoff = 28, kPhnum = 44;
-constexpr std::size_t kPhentsize = 32, kPFilesz = 16;
+constexpr std::size_t kVersion = 20, kEntry = 24, kPhentry = 42;
+constexpr std::size_t kPhentsize = 32, kPPaddr = 12, kPFilesz = 16;
 
 class ElfTest : public testing::Test {
  protected:
@@ -145,6 +146,45 @@ TEST_F(ElfTest, OtherMachineClassOrderAndTypeAreRefused) {
   EXPECT_THAT(patched_error(kClass, 2), HasSubstr("patched.elf"));
   EXPECT_THAT(patched_error(kData, 2), HasSubstr("patched.elf"));
   EXPECT_THAT(user_error([] { ElfImage::load(kObject); }), HasSubstr("object file"));
+}
+
+// The entry point is in no segment; in the zeros behind one; in the middle of an ARM instruction; of the other state.
+TEST_F(ElfTest, EntryPointIsInTheBytesOfASegmentAndOfItsInstructionSet) {
+  const std::string whole = read_text(kGood);
+  const auto image = ElfImage::load(kGood);
+  const auto with_entry = [&](std::uint32_t entry) {
+    std::string bytes = whole;
+    for (unsigned k = 0; k < 4; ++k) bytes[kEntry + k] = static_cast<char>(entry >> 8 * k);
+    return dir.write("entry.elf", bytes);
+  };
+  const auto refusal = [&](std::uint32_t entry) {
+    const auto file = with_entry(entry);
+    return user_error([&] { ElfImage::load(file); });
+  };
+  const std::uint32_t arm = image.find("add_one")->address, thumb = image.find("thumb_double")->address;
+  EXPECT_EQ(ElfImage::load(with_entry(arm)).entry(), arm);
+  EXPECT_EQ(ElfImage::load(with_entry(thumb + 1)).entry(), thumb + 1);
+  EXPECT_THAT(refusal(0x0400'0000), AllOf(HasSubstr("entry.elf"), HasSubstr("entry point 0x04000000 is in no segment"),
+                                          HasSubstr("physical address")));
+  EXPECT_THAT(refusal(image.find("zeroed")->address & ~3u), HasSubstr("is in no segment"));
+  EXPECT_THAT(refusal(arm + 2), HasSubstr("no address of an ARM instruction"));
+  EXPECT_THAT(refusal(arm + 1), HasSubstr("selects Thumb state, but the code there is ARM"));
+  EXPECT_THAT(refusal((thumb + 3) & ~3u), HasSubstr("selects ARM state, but the code there is Thumb"));
+}
+
+TEST_F(ElfTest, FieldsOfTheHeaderThatLibelfTakesAsTheyAreAreChecked) {
+  EXPECT_THAT(patched_error(kVersion, 2), HasSubstr("version 2 of ELF"));
+  EXPECT_THAT(patched_error(kPhentry, 40), HasSubstr("has 40 bytes; allowed: 32"));
+}
+
+TEST_F(ElfTest, OverlapOfSegmentsIsOneOfPhysicalAddresses) {
+  std::string bytes = read_text(kGood);
+  const auto phoff = static_cast<std::uint8_t>(bytes[kPhoff]);
+  for (unsigned i = 0; i < static_cast<std::uint8_t>(bytes[kPhnum]); ++i)
+    bytes.replace(phoff + i * kPhentsize + kPPaddr, 4, 4, '\0');
+  const auto file = dir.write("patched.elf", bytes);
+  EXPECT_THAT(user_error([&] { ElfImage::load(file); }),
+              AllOf(HasSubstr("overlap in their physical addresses"), HasSubstr("0x00000000..")));
 }
 
 TEST_F(ElfTest, ProgramWithoutSegmentsIsRefused) {

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/outputs.h"
+#include "sw/fovea/safe_yaml.h"
 
 namespace fovea::regression {
 namespace {
@@ -25,9 +25,9 @@ class BaselineReader {
   Baseline read() {
     YAML::Node root;
     try {
-      root = YAML::Load(out_.text);
-    } catch (const YAML::Exception& e) {
-      fail(e.mark.line, app::one_line(e.msg));
+      root = app::load_yaml(out_.text);
+    } catch (const app::YamlFault& e) {
+      fail(e.line - 1, e.what());
     }
     if (!root.IsMap()) fail(0, "not a baseline; allowed: a map with 'format: fovea baseline 1'");
     const auto format = root["format"];
@@ -124,15 +124,12 @@ class BaselineReader {
   }
 
   void known(const YAML::Node& map, const std::vector<std::string>& names, const std::string& where) {
-    std::set<std::string> seen;
     for (const auto& item : map) {
       const std::string& key = item.first.Scalar();
       if (std::find(names.begin(), names.end(), key) == names.end())
         fail(item.first.Mark().line, fmt::format("unknown key '{}' in {}; allowed: {}",
                                                  app::one_line(key, 60), where,
                                                  fmt::join(names, ", ")));
-      if (!seen.insert(key).second)
-        fail(item.first.Mark().line, fmt::format("'{}' occurs twice in {}", key, where));
     }
   }
 
@@ -183,13 +180,8 @@ class BaselineReader {
     if (!metrics || !metrics.IsMap() || metrics.size() == 0)
       fail(metrics ? metrics.Mark().line : root.Mark().line,
            "'metrics' is missing or empty; allowed: figures of stats.json with value and unit");
-    std::set<std::string> seen;
-    for (const auto& item : metrics) {
-      const std::string& name = item.first.Scalar();
-      if (!seen.insert(name).second)
-        fail(item.first.Mark().line, fmt::format("'{}' occurs twice", app::one_line(name, 60)));
-      out_.metrics.push_back(read_metric(name, item.second, item.first.Mark().line));
-    }
+    for (const auto& item : metrics)
+      out_.metrics.push_back(read_metric(item.first.Scalar(), item.second, item.first.Mark().line));
   }
 
   Expectation read_metric(const std::string& name, const YAML::Node& node, int line) {
