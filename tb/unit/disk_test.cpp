@@ -1,12 +1,16 @@
 // What reaches the disk, and in which order: the system calls that finish files and folders of
 // results are replaced by functions that record them and fail on demand.
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <functional>
+#include <memory>
+#include <utility>
 
+#include "sw/fovea/output_file.h"
 #include "sw/fovea/run_dir.h"
 #include "tb/unit/support.h"
 
@@ -14,6 +18,7 @@ namespace {
 
 /// Set by a test; empty: the real call alone. Each returns the error to fail with, or 0.
 std::function<int(int fd)> on_close, on_fsync;
+std::function<void()> before_lock;
 std::function<int(const std::string& from, const std::string& to, unsigned flags)> on_rename;
 
 int refuse(int error) {
@@ -43,6 +48,10 @@ extern "C" int fsync(int fd) {
   const int error = on_fsync ? on_fsync(fd) : 0;
   return error ? refuse(error) : static_cast<int>(::syscall(SYS_fsync, fd));
 }
+extern "C" int flock(int fd, int operation) noexcept {
+  if (before_lock) std::exchange(before_lock, nullptr)();
+  return static_cast<int>(::syscall(SYS_flock, fd, operation));
+}
 extern "C" int rename(const char* from, const char* to) noexcept { return do_rename(from, to, 0); }
 extern "C" int renameat2(int, const char* from, int, const char* to, unsigned flags) noexcept {
   return do_rename(from, to, flags);
@@ -67,6 +76,7 @@ class DiskTest : public testing::Test {
   ~DiskTest() override {
     on_close = on_fsync = nullptr;
     on_rename = nullptr;
+    before_lock = nullptr;
   }
   /// A result whose uart.log has this text.
   void run_with(const std::string& text) {
@@ -183,6 +193,33 @@ TEST_F(DiskTest, AFileThatAppearsInTheOldResultAtTheLastMomentStays) {
   run_with("new");
   EXPECT_THAT(where("new"), ElementsAre("r"));
   EXPECT_EQ(read_text(dir / "r.tmp/letter.txt"), "dear");
+}
+
+// The second writer opens NAME.tmp, and the first one renames it before the second has the lock: what is locked then is
+// the first one's result.
+TEST_F(DiskTest, ALockThatComesWhenTheFileHasItsNameIsNone) {
+  const auto open = [&] {
+    return std::make_unique<OutputFile>(dir / "f", "--trace", "a trace", [](std::string_view) { return true; });
+  };
+  auto first = open();
+  first->write("trace");
+  before_lock = [&] {
+    first->commit();
+    first.reset();
+  };
+  EXPECT_THAT(user_error([&] { open(); }), HasSubstr("another run is writing it"));
+  EXPECT_EQ(read_text(dir / "f"), "trace");
+  run_with("old");
+  auto running = std::make_unique<RunDir>(dir / "r", "run");
+  running->write("config.json", kConfig);
+  running->write("stats.json", R"({"complete": true})");
+  running->write("uart.log", "new");
+  before_lock = [&] {
+    running->commit(true);
+    running.reset();
+  };
+  EXPECT_THAT(user_error([&] { RunDir second(dir / "r", "run"); }), HasSubstr("another run is writing it"));
+  EXPECT_THAT(where("new"), ElementsAre("r"));
 }
 
 }  // namespace
