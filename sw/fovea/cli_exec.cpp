@@ -66,6 +66,7 @@ ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOpt
   out.left = uart0.quit();
   out.exit_code = result.exit_code.value_or(0);
   out.guest_failure = std::move(result.guest_failure);
+  out.lost = std::move(result.lost);
   out.stats = std::move(result.stats);
   out.host = std::move(result.host);
   out.stalls = std::move(result.stalls);
@@ -277,6 +278,7 @@ int program_status(const ExecOptions& o, const ExecResult& result, bool lost, co
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
   if (o.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
   if (lost) throw UserError("the program's output cannot be written");
+  if (result.complete && !result.lost.empty()) return kExitWrongInput;
   if (result.complete) return result.exit_code;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << fmt::format("fovea: stopped {}; the figures cover what was simulated\n",
@@ -341,6 +343,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   context.err << result.profile.table;
   if (!dir) context.err << result.registers << std::flush;
   if (dir) write_program_results(o, result, args, *dir, context);
+  say_lost(result.lost, context);
   return program_status(o, result, lost, context);
 }
 

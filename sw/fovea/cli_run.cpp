@@ -150,12 +150,12 @@ void report_run(const RunOptions& options, const RunResult& result, const std::v
   report << result.profile.table;
   for (const auto& note : result.notes) report << one_line(note) << "\n";
   if (!result.ended.empty()) report << fmt::format("ended by {}\n", result.ended);
-  report << fmt::format("results in {}\n", dir.folder().string());
+  report << fmt::format("results in {}\n", one_line(dir.folder().string(), std::string::npos));
   const StatRow* shown = find(result.stats, "frame.displayed");
   if (!options.no_frames && shown && shown->value != StatBase::Value(std::uint64_t{0}))
     report << "pictures in its frames/ (displayed) and camera/ (what the camera sent)\n";
-  if (options.report)
-    report << fmt::format("report in {}\n", (dir.folder() / "report.html").string());
+  if (const fs::path page = dir.folder() / "report.html"; options.report && fs::exists(page))
+    report << fmt::format("report in {}\n", one_line(page.string(), std::string::npos));
   report << std::flush;
 }
 
@@ -168,7 +168,7 @@ int run_status(const RunOptions& options, const RunResult& result, bool quit, co
   if (!context.out) throw UserError("the program's output cannot be written");
   if (result.complete && result.exit_code.value_or(0) != 0)
     throw GuestFailure(fmt::format("the program ended with status {}", *result.exit_code));
-  if (result.complete) return kExitDone;
+  if (result.complete) return result.lost.empty() ? kExitDone : kExitWrongInput;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << "fovea: stopped before the end; the figures cover what was simulated\n";
   if (quit) return 128 + SIGINT;
@@ -202,8 +202,11 @@ std::vector<StatRow> write_run(RunDir& dir, RunResult& result, ProgressMeter& me
   std::vector<StatRow> host;
   write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
   if (options.report)
-    add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment);
+    side_output("the report", result.lost, [&] {
+      add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment);
+    });
   say_note(dir.commit(result.complete && result.guest_failure.empty()), context);
+  say_lost(result.lost, context);
   context.out.flush();
   return host;
 }

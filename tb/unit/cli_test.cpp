@@ -190,6 +190,12 @@ TEST_F(CliTest, WhatTheHostRefusesIsStatusTwoAndNoDefect) {
   EXPECT_FALSE(fs::exists(dir / "r.tmp"));
 }
 
+TEST_F(CliTest, AnOutputBesideTheResultsTakesThemNotAlong) {
+  EXPECT_EQ(run({"-s", "run.mode=lost_output"}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("error: the toy is missing: out of memory; all other results are kept\n"));
+  EXPECT_TRUE(fs::exists(result / "stats.json"));
+}
+
 TEST_F(CliTest, ASignalBeforeTheSimulationLeavesNoFolder) {
   signal = SIGTERM;
   EXPECT_EQ(run({"-s", "run.mode=stopped_decoding"}), 143);
