@@ -193,7 +193,7 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   if (around) dir.write("requests.csv", around->csv());
   say_note(dir.commit(complete), context);
   context.out << replay_words(stats, host, slowest);
-  context.out << fmt::format("results in {}\n", dir.folder().string()) << std::flush;
+  context.out << fmt::format("results in {}\n", one_line(dir.folder().string(), std::string::npos)) << std::flush;
   if (complete) return kExitDone;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << "fovea: stopped before the end; the figures cover what was replayed\n";

@@ -10,15 +10,13 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/safe_json.h"
 
 namespace fovea::app {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr std::size_t kMaxConfigBytes = 16u << 20;
-constexpr std::size_t kMaxStatsBytes = 64u << 20;
 
 /// The files of all commands. RunDir refuses to write files that are not listed here.
 constexpr auto kFiles = std::to_array<std::string_view>(
@@ -65,10 +63,10 @@ bool is_regular(const fs::path& file) {
   return fs::symlink_status(file, ignored).type() == fs::file_type::regular;
 }
 
-/// Reads a JSON file; returns a discarded value if it cannot be read or is not JSON.
-json read_json(const fs::path& file, std::size_t max_bytes) {
+/// A discarded value if the file cannot be read or is not JSON.
+json json_if_any(const fs::path& file) {
   try {
-    return json::parse(read_file(file, max_bytes), nullptr, false);
+    return read_json(file);
   } catch (const UserError&) {
     return json(json::value_t::discarded);
   }
@@ -101,7 +99,7 @@ bool is_run_file(std::string_view name) {
 }
 
 bool is_run_folder(const fs::path& dir) {
-  const json config = read_json(dir / "config.json", kMaxConfigBytes);
+  const json config = json_if_any(dir / "config.json");
   return config.is_object() && config.contains("format") && config["format"] == kRunFormat;
 }
 
@@ -124,12 +122,12 @@ RunFolder inspect_run_folder(const fs::path& dir) {
       found.foreign = name.string();
   });
   if (!found.ours) return found;
-  const json host = read_json(dir / "host.json", kMaxConfigBytes);
+  const json host = json_if_any(dir / "host.json");
   if (host.is_object() && host.contains("command") && host["command"].is_array() &&
       !host["command"].empty() && host["command"][0].is_string())
     found.command = host["command"][0];
   if (fs::exists(fs::symlink_status(dir / "stats.json", error))) {
-    const json stats = read_json(dir / "stats.json", kMaxStatsBytes);
+    const json stats = json_if_any(dir / "stats.json");
     // Results that cannot be read count as complete, so that partial results do not replace them.
     found.complete =
         !(stats.is_object() && stats.contains("complete") && stats["complete"] == false);
