@@ -36,8 +36,13 @@ if(FOVEA_SANITIZE STREQUAL "address")
 elseif(FOVEA_SANITIZE STREQUAL "thread")
   add_compile_options(-O1 -fsanitize=thread -fno-omit-frame-pointer)
   add_link_options(-fsanitize=thread)
+elseif(FOVEA_SANITIZE STREQUAL "fuzz")
+  # For libFuzzer, with the lines that it reaches (clang only; tb/fuzz).
+  add_compile_options(-O1 -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined
+                      -fno-omit-frame-pointer -fprofile-instr-generate -fcoverage-mapping)
+  add_link_options(-fsanitize=address,undefined -fprofile-instr-generate)
 elseif(FOVEA_SANITIZE)
-  message(FATAL_ERROR "FOVEA_SANITIZE is '${FOVEA_SANITIZE}'; it can be 'address', 'thread' or empty")
+  message(FATAL_ERROR "FOVEA_SANITIZE is '${FOVEA_SANITIZE}'; it can be 'address', 'thread', 'fuzz' or empty")
 endif()
 
 if(FOVEA_COVERAGE)

@@ -200,6 +200,7 @@ std::optional<ElfImage> BoardSimulation::loader_of(const ElfImage& program,
   if (!request.hosted || std::any_of(segments.begin(), segments.end(),
                                      [](const ElfSegment& s) { return s.address < kSdram; }))
     return std::nullopt;
+  refuse_mobile_memory(params_, "the boot loader of exec --board");
   return ElfImage::load(built_program("board_loader.elf"));
 }
 
@@ -503,11 +504,11 @@ void BoardSimulation::collect(Session& s, RunResult& result) {
     result.untyped = s.console->open_step();
   }
   if (s.semihosting) result.exit_code = s.semihosting->exit_code();
-  if (trace_) side_output(result.lost, "--bus-trace", [&] { trace_->finish(); });
-  if (commands_) side_output(result.lost, "--command-trace", [&] { commands_->finish(); });
+  if (trace_) side_output("the bus trace", result.lost, [&] { trace_->finish(); });
+  if (commands_) side_output("the command trace", result.lost, [&] { commands_->finish(); });
   if (around_) result.around = around_->csv();
   if (perfetto_)
-    side_output(result.lost, "--perfetto", [&] {
+    side_output("the Perfetto file", result.lost, [&] {
       if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
     });
   result.guest_failure = s.guest;
@@ -516,7 +517,7 @@ void BoardSimulation::collect(Session& s, RunResult& result) {
   if (mosaic_score_) mosaic_score_->add(result.stats, board_->camera_stats());
   if (picture_score_) picture_score_->add(result.stats);
   if (profile_)
-    side_output(result.lost, "--profile", [&] { collect_profile(result, counted, s.request, s.program); });
+    side_output("the profile", result.lost, [&] { collect_profile(result, counted, s.request, s.program); });
   if (s.hazards) {
     s.hazards->settle(board_->window_end().value_or(kernel_time()));
     s.hazards->collect(result.stats);

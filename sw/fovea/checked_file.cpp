@@ -23,17 +23,33 @@ struct OpenFile {
   }
 };
 
-/// Appends byte i of `text`, as an escape if it belongs to a control character: C0, DEL, or one of
-/// C1 (U+0080 to U+009F), which some terminals interpret too.
-void append_printable(std::string& out, std::string_view text, std::size_t i) {
-  const auto at = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-  const auto c1 = [](unsigned byte) { return byte >= 0x80 && byte < 0xA0; };
-  const bool starts_c1 = at(i) == 0xC2 && i + 1 < text.size() && c1(at(i + 1));
-  const bool ends_c1 = i > 0 && at(i - 1) == 0xC2 && c1(at(i));
-  if (at(i) < 0x20 || at(i) == 0x7F || starts_c1 || ends_c1)
-    out += fmt::format("\\x{:02x}", at(i));
-  else
-    out += text[i];
+/// Bytes of the character that begins at byte i, if it is one of UTF-8 (RFC 3629) that controls no terminal: no C0, DEL
+/// or C1 (U+0080 to U+009F), which some terminals interpret too. Otherwise 0.
+std::size_t harmless(std::string_view text, std::size_t i) {
+  const auto byte = [&](std::size_t k) { return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u; };
+  const unsigned first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7F;
+  const std::size_t size = first >= 0xC2 && first < 0xE0   ? 2
+                           : (first & 0xF0) == 0xE0        ? 3
+                           : first >= 0xF0 && first < 0xF5 ? 4
+                                                           : 0;
+  for (std::size_t k = 1; k < size; ++k)
+    if ((byte(k) & 0xC0) != 0x80) return 0;
+  const bool longer_than_needed = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xF0 && byte(1) < 0x90);
+  const bool no_character = (first == 0xED && byte(1) >= 0xA0) || (first == 0xF4 && byte(1) >= 0x90);
+  const bool c1 = first == 0xC2 && byte(1) < 0xA0;
+  return longer_than_needed || no_character || c1 ? 0 : size;
+}
+
+/// Appends the character at byte i, or its first byte as an escape. @return bytes of `text` used
+std::size_t append_printable(std::string& out, std::string_view text, std::size_t i) {
+  const std::size_t size = harmless(text, i);
+  if (size == 0) {
+    out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[i]));
+    return 1;
+  }
+  out += text.substr(i, size);
+  return size;
 }
 }  // namespace
 
@@ -130,25 +146,23 @@ std::string read_file(const std::filesystem::path& path, std::size_t max_bytes) 
 
 std::string one_line(std::string_view text, std::size_t max_chars) {
   std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
+  for (std::size_t i = 0; i < text.size();) {
     if (out.size() >= max_chars) return out + "...";
-    if (text[i] == '\n')
-      out += "\\n";
-    else if (text[i] == '\t')
-      out += ' ';
+    if (text[i] == '\n' || text[i] == '\t')
+      out += text[i++] == '\n' ? "\\n" : " ";
     else
-      append_printable(out, text, i);
+      i += append_printable(out, text, i);
   }
   return out;
 }
 
 std::string printable(std::string_view text) {
   std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
+  for (std::size_t i = 0; i < text.size();) {
     if (text[i] == '\n')
-      out += '\n';
+      out += text[i++];
     else
-      append_printable(out, text, i);
+      i += append_printable(out, text, i);
   }
   return out;
 }

@@ -51,12 +51,12 @@ inline constexpr std::size_t kMaxSettingsBytes = 1u << 20;
 /// Reads a whole regular file of at most `max_bytes`. @throws UserError that names the file
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 
-/// `text` with every control character except the line feed written as an escape, so that text from
-/// a file or from the guest cannot control the terminal.
+/// `text` with every control character except the line feed, and every byte that is not UTF-8, written as an escape, so
+/// that text from a file or from the guest cannot control the terminal or spoil a page.
 std::string printable(std::string_view text);
 
-/// `text` on one line: control characters become escapes, and it is cut after `max_chars`
-/// characters.
+/// `text` on one line: control characters and bytes that are not UTF-8 become escapes, and it is cut after `max_chars`
+/// bytes, behind a whole character.
 std::string one_line(std::string_view text, std::size_t max_chars = 400);
 
 }  // namespace fovea::app

@@ -43,6 +43,8 @@ void install_signals(CliContext& context);
 
 /// Prints a sentence about what a command did of its own accord; nothing if it is empty.
 void say_note(const std::string& note, const CliContext& context);
+/// Says what is missing beside the results.
+void say_lost(const LostOutputs& lost, const CliContext& context);
 
 std::string version_text();
 

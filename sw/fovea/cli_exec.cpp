@@ -67,6 +67,7 @@ ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOpt
   out.exit_code = result.exit_code.value_or(0);
   out.guest_failure = std::move(result.guest_failure);
   out.difference = std::move(result.difference);
+  out.lost = std::move(result.lost);
   out.stats = std::move(result.stats);
   out.host = std::move(result.host);
   out.stalls = std::move(result.stalls);
@@ -276,7 +277,6 @@ void write_program_results(const ExecOptions& o, const ExecResult& result, const
 
 /// The exit status. `lost`: the program's output could not be written. @throws ModelsDiffer, GuestFailure, UserError
 int program_status(const ExecOptions& o, const ExecResult& result, bool lost, const CliContext& context) {
-  for (const std::string& why : result.lost) say_note(why + "; the other results are there", context);
   if (!result.difference.empty()) throw ModelsDiffer(result.difference);
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
   if (o.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
@@ -345,6 +345,7 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   context.err << result.profile.table;
   if (!dir) context.err << result.registers << std::flush;
   if (dir) write_program_results(o, result, args, *dir, context);
+  say_lost(result.lost, context);
   return program_status(o, result, lost, context);
 }
 

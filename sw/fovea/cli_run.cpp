@@ -120,7 +120,7 @@ class PictureFiles {
     if (sent_) request.camera = [this](const DisplayedFrame& f) { push(*sent_, f); };
   }
   /// @param lost receives why there is no film
-  void close(std::vector<std::string>& lost) {
+  void close(LostOutputs& lost) {
     displayed_.close();
     if (sent_) sent_->close();
     if (!displayed_.lost_video().empty()) lost.push_back(displayed_.lost_video());
@@ -156,18 +156,17 @@ void report_run(const RunOptions& options, const RunResult& result, const std::v
   report << result.profile.table;
   for (const auto& note : result.notes) report << one_line(note) << "\n";
   if (!result.ended.empty()) report << fmt::format("ended by {}\n", result.ended);
-  report << fmt::format("results in {}\n", dir.folder().string());
+  report << fmt::format("results in {}\n", one_line(dir.folder().string(), std::string::npos));
   const StatRow* shown = find(result.stats, "frame.displayed");
   if (!options.no_frames && shown && shown->value != StatBase::Value(std::uint64_t{0}))
     report << "pictures in its frames/ (displayed) and camera/ (what the camera sent)\n";
-  if (options.report && fs::exists(dir.folder() / "report.html"))
-    report << fmt::format("report in {}\n", (dir.folder() / "report.html").string());
+  if (const fs::path page = dir.folder() / "report.html"; options.report && fs::exists(page))
+    report << fmt::format("report in {}\n", one_line(page.string(), std::string::npos));
   report << std::flush;
 }
 
 /// The exit status of a run whose results are written. @throws ModelsDiffer, GuestFailure, UserError
 int run_status(const RunOptions& options, const RunResult& result, bool quit, const CliContext& context) {
-  for (const std::string& why : result.lost) say_note(why + "; the other results are there", context);
   if (!result.untyped.empty())
     context.err << fmt::format("fovea: warning: uart0.input is not over: {}\n", result.untyped);
   if (!result.difference.empty()) throw ModelsDiffer(result.difference);
@@ -210,10 +209,11 @@ std::vector<StatRow> write_run(RunDir& dir, RunResult& result, ProgressMeter& me
   std::vector<StatRow> host;
   write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
   if (options.report)
-    side_output(result.lost, "--report", [&] {
+    side_output("the report", result.lost, [&] {
       add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment);
     });
   say_note(dir.commit(result.complete && result.guest_failure.empty()), context);
+  say_lost(result.lost, context);
   context.out.flush();
   return host;
 }

@@ -87,23 +87,26 @@ class ElfFile {
     return static_cast<std::uint32_t>(header.e_entry);
   }
 
-  /// The core begins at the entry with its MMU off, so that is a physical address, where the file has put something.
-  /// Bit 0 selects the Thumb state (ELF for the Arm Architecture, "Entry point"), which must be that of the code there
-  /// as far as the file's mapping symbols tell.
+  /// The entry is where the file has put something, by a physical address, or by a virtual one as kernels have it that
+  /// are loaded for their symbols. Bit 0 selects the Thumb state (ELF for the Arm Architecture, "Entry point"), which
+  /// must be that of the code there as far as the file's mapping symbols tell.
   void check_entry(std::uint32_t entry, const std::vector<ElfSegment>& segments) const {
     const bool thumb = (entry & 1) != 0;
     const std::uint32_t address = entry & ~1u;
-    const auto home = std::find_if(segments.begin(), segments.end(), [&](const ElfSegment& s) {
-      return address - s.address < s.data.size();
-    });
+    const auto inside = [&](std::uint32_t ElfSegment::*base) {
+      return std::find_if(segments.begin(), segments.end(),
+                          [&](const ElfSegment& s) { return address - s.*base < s.data.size(); });
+    };
+    auto home = inside(&ElfSegment::address);
+    const bool physical = home != segments.end();
+    if (!physical) home = inside(&ElfSegment::virtual_address);
     if (home == segments.end())
-      fail(fmt::format("its entry point 0x{:08x} is in no segment; allowed: a physical address in the bytes of one",
-                       entry));
+      fail(fmt::format("its entry point 0x{:08x} is in no segment; allowed: an address in the bytes of one", entry));
     if (!thumb && address % 4 != 0)
       fail(fmt::format("its entry point 0x{:08x} is no address of an ARM instruction; allowed: a multiple of 4, or an "
                        "odd address for Thumb code",
                        entry));
-    const std::uint32_t at = address - home->address + home->virtual_address;
+    const std::uint32_t at = physical ? address - home->address + home->virtual_address : address;
     const auto above = code_kinds_.upper_bound(at);
     if (above == code_kinds_.begin() || std::prev(above)->first < home->virtual_address) return;
     const char kind = std::prev(above)->second;

@@ -132,7 +132,7 @@ ExecResult ExecSession::result(const std::string& failure) {
                   std::get<std::uint64_t>(find(out.stats, "cpu.cycles")->value),
               "every clock of the core has one cause");
   out.stalls = stall_rows({}, c, core_.regions());
-  if (request_.profile) out.profile = profile();
+  if (request_.profile) side_output("the profile", out.lost, [&] { out.profile = profile(); });
   return out;
 }
 
@@ -145,7 +145,7 @@ ProfileResult ExecSession::profile() const {
   ProfileData data;
   data.program = program_.name();
   data.regions = core_.regions().names();
-  data.phases = {{"run", true, core_.profile()->rows(0), stacks_of(*core_.profile(), 0)}};
+  data.phases = {{"run", true, core_.profile()->rows(0), core_.profile()->stacks.paths_of(0)}};
   add_stacks(data, core_.profile()->stacks);
   data.masked = core_.profile()->mask.longest();
   return profile_result(data, programs());

@@ -13,6 +13,7 @@
 #include "sw/fovea/exec_program.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/profile_report.h"
+#include "sw/fovea/side_output.h"
 #include "sw/fovea/register_log.h"
 #include "sw/fovea/run_limits.h"
 #include "sw/fovea/semihosting.h"
@@ -49,6 +50,7 @@ struct ExecResult {
   std::vector<StallRow> stalls;
   std::string registers;  ///< the register log, if requested
   ProfileResult profile;  ///< if requested
+  LostOutputs lost = {};  ///< of what was asked for beside the results
   std::string hazards;    ///< with --hazards: a sentence about those found; empty: none
   std::string ended;      ///< with --board: a sentence about what ended the run; may be empty
   std::vector<std::string> lost = {};  ///< why outputs beside the results could not be written, a sentence each

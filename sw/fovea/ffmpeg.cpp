@@ -75,6 +75,8 @@ std::optional<RgbImage> take_frame(std::string& buffer) {
   if (largest != 255)
     throw std::runtime_error("its pictures have more than 8 bits a channel, and ffmpeg does not "
                              "convert them; convert the file with '-pix_fmt yuv420p'");
+  if (width == 0 || height == 0)
+    throw std::runtime_error(fmt::format("its picture of {}x{} pixels is empty", width, height));
   if (width > kMaxPictureSide || height > kMaxPictureSide)
     throw std::runtime_error(
         fmt::format("its pictures of {}x{} pixels are too large; allowed: up to {} "
@@ -212,8 +214,10 @@ FilmInfo film_info(const std::filesystem::path& file, const Patience& patience, 
   try {
     child.emplace(std::vector<std::string>{program, "-v", "error", "-protocol_whitelist", "file,pipe",
                                            "-format_whitelist", kFormats, "-select_streams", "v:0", "-show_entries",
-                                           "stream=width,height,sample_aspect_ratio,avg_frame_rate", "-of",
-                                           "default=noprint_wrappers=1", "-i", kFootage},
+                                           "stream=width,height,sample_aspect_ratio,avg_frame_rate:"
+                                           "frame=interlaced_frame,top_field_first,color_transfer",
+                                           "-read_intervals", "%+#1", "-of", "default=noprint_wrappers=1", "-i",
+                                           kFootage},
                   ChildProcess::Stream::kOutput, fmt::format("cannot ask about '{}'", one_line(file.string())),
                   patience, film.get());
   } catch (const UserError&) {
@@ -239,6 +243,14 @@ FilmInfo film_info(const std::filesystem::path& file, const Patience& patience, 
   };
   out.width = number("width=");
   out.height = number("height=");
+  // Of the first frame, as the decoder sees it: some containers do not say it of the stream.
+  if (number("interlaced_frame=") != 0)
+    out.fields = number("top_field_first=") != 0 ? FilmInfo::Fields::kTopFirst : FilmInfo::Fields::kBottomFirst;
+  constexpr std::string_view kTransfer = "color_transfer=";
+  if (const std::size_t at = text.find(kTransfer); at != std::string::npos) {
+    const std::size_t from = at + kTransfer.size();
+    out.transfer = one_line(text.substr(from, text.find_first_of("\r\n", from) - from), 40);
+  }
   std::uint64_t a = 0, b = 0;
   if (pair("avg_frame_rate=", '/', a, b)) out.rate = Frequency(a, b);
   if (pair("sample_aspect_ratio=", ':', a, b))

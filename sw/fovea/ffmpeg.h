@@ -33,7 +33,10 @@ std::vector<RgbImage> decode_frames(const std::filesystem::path& file,
 struct FilmInfo {
   Frequency rate;           ///< frames per second; stopped: unknown
   double pixel_aspect = 1;  ///< width / height of a displayed pixel
-  unsigned width = 0, height = 0;  ///< size in the file, before scaling; 0: unknown
+  unsigned width = 0, height = 0;  ///< size in the file, before it is turned and scaled; 0: unknown
+  enum class Fields { kNone, kTopFirst, kBottomFirst };
+  Fields fields = Fields::kNone;  ///< of interlaced material the field that is earlier
+  std::string transfer = {};      ///< ffmpeg's name of the transfer function; empty or "unknown": unknown
 };
 /// Asks `ffprobe`, which is part of ffmpeg. What it does not report stays unknown. @throws UserError if it does not
 /// answer in time @throws Stopped

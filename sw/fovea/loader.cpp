@@ -110,22 +110,70 @@ std::unique_ptr<video::StampedSource> camera_source(const board::BoardParams& pa
                                     camera);
 }
 
+namespace {
+
+/// The size of the footage before it was scaled: as its file says, but upright, as the decoder turns it by a rotation
+/// tag or EXIF. The decoded frames show whether it did.
+struct Shape {
+  unsigned width, height;
+  double pixel_aspect;
+};
+Shape upright(const RgbImage& frame, const FilmInfo& info) {
+  if (!info.width || !info.height) return {frame.width, frame.height, info.pixel_aspect};
+  const double stored = static_cast<double>(info.width) / info.height;
+  const double seen = static_cast<double>(frame.width) / frame.height;
+  if (std::abs(std::log(seen / stored)) <= std::abs(std::log(seen * stored)))
+    return {info.width, info.height, info.pixel_aspect};
+  return {info.height, info.width, 1 / info.pixel_aspect};
+}
+
+/// The camera sends the rows of the first field, and half a frame later the others.
+std::string fields_note(const board::BoardParams& params, const video::SceneParams& camera, const RgbImage& frame,
+                        FilmInfo::Fields fields) {
+  if (fields == FilmInfo::Fields::kNone) return "";
+  const bool top = fields == FilmInfo::Fields::kTopFirst;
+  const bool top_sent = params.video.format().is_625 || !params.decoder.crop_525.is("studio");
+  const std::string what = fmt::format("footage is interlaced, {} field first", top ? "top" : "bottom");
+  if (camera.video_fov() > 0 || frame.height != params.raster_height())
+    return what + ": its fields are taken as one picture, so what moves has two edges; 'ffmpeg -vf bwdif' takes them "
+                  "apart";
+  if (top == top_sent) return "";
+  return fmt::format("{}, and the {} one is sent first: what moves steps back within each frame; 'ffmpeg -vf "
+                     "fieldorder={}' exchanges them",
+                     what, top_sent ? "top" : "bottom", top_sent ? "tff" : "bff");
+}
+
+/// The transfer functions of ordinary television and computer pictures differ little; those of HDR and of scene-linear
+/// material would have to be mapped.
+std::string transfer_note(const std::string& transfer) {
+  for (const std::string_view usual : {"", "unknown", "reserved", "bt709", "gamma22", "bt470m", "gamma28", "bt470bg",
+                                       "smpte170m", "smpte240m", "iec61966-2-1", "iec61966-2-4", "bt1361e", "bt2020-10",
+                                       "bt2020-12"})
+    if (transfer == usual) return "";
+  return fmt::format("footage has the transfer function {}, which is not followed: its brightness is shown as if it "
+                     "were that of ordinary television",
+                     transfer);
+}
+
+}  // namespace
+
 std::vector<std::string> footage_notes(const board::BoardParams& params,
                                        const video::SceneParams& camera,
                                        const std::vector<RgbImage>& frames, const FilmInfo& info) {
   std::vector<std::string> out;
   if (frames.empty() || camera.kind.is("chart")) return out;
-  // The frames of a video may have been scaled down when they were read.
-  const unsigned width = info.width ? info.width : frames.front().width;
-  const unsigned height = info.height ? info.height : frames.front().height;
+  const auto [width, height, pixel_aspect] = upright(frames.front(), info);
   // A television raster is displayed 4:3. Frames that are warped by a lens keep their shape.
   const bool film = camera.kind.is("video");
-  const double change = height * (4.0 / 3) / (width * info.pixel_aspect);
+  const double change = height * (4.0 / 3) / (width * pixel_aspect);
   if (!(film && camera.video_fov() > 0) && std::abs(change - 1) > 0.01)
     out.push_back(fmt::format("footage of {}x{} is stretched to 4:3, {:.0f} % {}", width, height,
                               100 * std::abs(change - 1),
                               change > 1 ? "wider" : "narrower"));
   if (!film) return out;
+  for (const std::string& note :
+       {fields_note(params, camera, frames.front(), info.fields), transfer_note(info.transfer)})
+    if (!note.empty()) out.push_back(note);
   const board::VideoFormat& format = params.video.format();
   const double camera_rate = format.digital ? params.video.digital_clock().hertz() / format.digital->frame_bytes()
                              : format.is_625 ? 25
@@ -268,6 +316,15 @@ void check_cameras(const board::BoardParams& params) {
 
 }  // namespace
 
+void refuse_mobile_memory(const board::BoardParams& params, std::string_view program) {
+  const auto& ddr = params.soc.ddr;
+  require(!ddr.mobile(), ddr.part.key(), ddr.part(),
+          fmt::format("DDR2 parts, whose times {} programs. A program of your own (firmware.elf) that programs mobile "
+                      "DDR runs on it, and 'fovea replay TRACE -s {}={} -s ddr.preset=data_sheet' plays a recorded run "
+                      "on it",
+                      program, ddr.part.key(), ddr.part()));
+}
+
 void complete_params(board::BoardParams& params) {
   const auto& v = params.video;
   require(v.width() % 4 == 0, v.width.key(), v.width.text(), "multiples of 4, 0 for all");
@@ -278,6 +335,7 @@ void complete_params(board::BoardParams& params) {
     require(std::has_single_bit(cache->size()), cache->size.key(), cache->size.text(),
             "powers of two");
   check_loads(params);
+  if (params.firmware.elf().empty()) refuse_mobile_memory(params, "the board's own program");
   check_digital(params);
   check_cameras(params);
   if (!params.decoder.standard.user_set())

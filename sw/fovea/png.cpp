@@ -21,6 +21,27 @@ struct ContextDeleter {
 };
 using Context = std::unique_ptr<spng_ctx, ContextDeleter>;
 
+/// How EXIF data ask for the picture to be turned (TIFF 6.0, tag 274); 1 is not at all, which is also taken for data
+/// that do not say it or are damaged.
+unsigned orientation_of(std::string_view exif) {
+  const bool little = exif.starts_with("II");
+  const auto number = [&](std::size_t at, std::size_t bytes) {
+    std::uint32_t out = 0;
+    if (at > exif.size() || bytes > exif.size() - at) return out;
+    for (std::size_t k = 0; k < bytes; ++k)
+      out = out << 8 | static_cast<unsigned char>(exif[at + (little ? bytes - 1 - k : k)]);
+    return out;
+  };
+  const std::size_t directory = number(4, 4);
+  const std::uint32_t entries = number(directory, 2);
+  for (std::uint32_t n = 0; n < entries; ++n) {
+    const std::size_t entry = directory + 2 + std::size_t{12} * n;
+    if (entry >= exif.size()) break;
+    if (number(entry, 2) == 274) return number(entry + 8, 2);
+  }
+  return 1;
+}
+
 constexpr std::int32_t fixed(double v) {
   return static_cast<std::int32_t>(v * 65536 + (v < 0 ? -0.5 : 0.5));
 }
@@ -85,6 +106,11 @@ RgbImage read_png(const std::filesystem::path& file) {
   RgbImage image{header.width, header.height, std::vector<std::uint8_t>(size)};
   check(spng_decode_image(context.get(), image.rgb.data(), size, SPNG_FMT_RGB8, 0));
   check(spng_decode_chunks(context.get()));
+  if (spng_exif exif{}; spng_get_exif(context.get(), &exif) == SPNG_OK)
+    if (const unsigned turned = orientation_of({exif.data, exif.length}); turned > 1 && turned <= 8)
+      Diagnostics::instance().configuration(fmt::format(
+          "picture '{}' is taken as it is stored: its EXIF orientation, {}, is not followed", one_line(file.string()),
+          turned));
   // The decoder does not require the end marker, but a file that is truncated after the pixels is
   // damaged.
   if (bytes.find(kLastChunk) == std::string::npos) fail("the PNG file is cut short");

@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -136,6 +137,31 @@ std::string holders_of(std::uint32_t address, SourceLines& lines) {
   return out;
 }
 
+/// Clocks by call path. `name(function)` is the text of one of its functions.
+template <class F>
+std::map<std::string, std::uint64_t> clocks_by_path(const ProfileStacks& stacks, F name) {
+  // Of each path how deep it is, and the last one of the paths to it that is shown as it is.
+  std::vector<std::uint32_t> depth(stacks.size()), shown(stacks.size());
+  // Equal texts are added up before they are made. The second of the pair: the function behind a gap.
+  std::map<std::pair<std::uint32_t, std::optional<std::uint32_t>>, std::uint64_t> sums;
+  for (std::uint32_t n = 0; n < stacks.size(); ++n) {
+    const auto& s = stacks[n];
+    if (n > 0) depth[n] = depth[s.caller] + 1;
+    shown[n] = depth[n] <= kShownDepth ? n : shown[s.caller];
+    if (s.clocks) sums[{shown[n], shown[n] == n ? std::nullopt : std::optional(s.function)}] += s.clocks;
+  }
+  std::map<std::string, std::uint64_t> out;
+  for (const auto& [key, clocks] : sums) {
+    std::vector<std::uint32_t> functions;
+    for (std::uint32_t n = key.first; n; n = stacks[n].caller) functions.push_back(stacks[n].function);
+    std::string text;
+    for (auto f = functions.rbegin(); f != functions.rend(); ++f) text += (text.empty() ? "" : ";") + name(*f);
+    if (key.second) text += ";...;" + name(*key.second);
+    out[text] += clocks;
+  }
+  return out;
+}
+
 /// The name of a function in a stack; a semicolon would begin another one.
 std::string stack_name(std::uint32_t address, SourceLines& lines) {
   std::string name = lines.function_text(address);
@@ -219,13 +245,8 @@ std::string profile_csv(const ProfileData& data, SourceLines& lines, const PollL
 std::string paths_csv(const ProfileData& data, SourceLines& lines) {
   std::string out = "phase,path,clocks\n";
   for (const ProfilePhase& phase : data.phases) {
-    std::map<std::string, std::uint64_t> sums;
-    for (const ProfileStack& s : phase.stacks) {
-      std::string path;
-      for (const std::uint32_t f : s.functions) path += (path.empty() ? "" : ";") + path_element(lines.at(f).back());
-      sums[path] += s.clocks;
-    }
-    for (const auto& [path, clocks] : sums)
+    const auto name = [&](std::uint32_t f) { return path_element(lines.at(f).back()); };
+    for (const auto& [path, clocks] : clocks_by_path(phase.stacks, name))
       out += fmt::format("{},{},{}\n", csv_field(phase.name), csv_field(path), clocks);
   }
   return out;
@@ -325,15 +346,9 @@ std::string profile_callgrind(const ProfileData& data, SourceLines& lines) {
 }
 
 std::string profile_folded(const ProfileData& data, SourceLines& lines) {
-  std::map<std::string, std::uint64_t> sums;
-  for (const ProfileStack& s : data.stacks) {
-    std::string names;
-    for (const std::uint32_t f : s.functions)
-      names += (names.empty() ? "" : ";") + stack_name(f, lines);
-    if (s.clocks) sums[names.empty() ? "(unknown)" : names] += s.clocks;
-  }
   std::string out;
-  for (const auto& [names, clocks] : sums) out += fmt::format("{} {}\n", names, clocks);
+  for (const auto& [names, clocks] : clocks_by_path(data.stacks, [&](std::uint32_t f) { return stack_name(f, lines); }))
+    out += fmt::format("{} {}\n", names.empty() ? "(unknown)" : names, clocks);
   return out;
 }
 

@@ -12,18 +12,19 @@
 
 namespace fovea::app {
 
-/// Clocks that were spent in a function that was called in this way.
-struct ProfileStack {
-  std::vector<std::uint32_t> functions;  ///< addresses of their first instructions, outermost first
-  std::uint64_t clocks = 0;
-};
+/// Clocks by call path, as a tree.
+using ProfileStacks = std::vector<cpu::CallStacks::Path>;
+
+/// Functions of a call path that a file shows: those of a deeper one are its first ones, `...` and its last one, so
+/// that a file grows with the program and not with the depth of a recursion.
+inline constexpr std::size_t kShownDepth = 200;
 
 /// A part of the run, such as `boot`; its rows as ClockProfile gives them.
 struct ProfilePhase {
   std::string name;
   bool window = false;  ///< part of the measured window
   std::vector<cpu::ProfileRow> rows;
-  std::vector<ProfileStack> stacks = {};  ///< all clocks of the phase by call path
+  ProfileStacks stacks = {};  ///< all clocks of the phase
 };
 
 /// Calls of the window from one instruction to one function.
@@ -37,7 +38,7 @@ struct ProfileData {
   std::string program;  ///< file name
   std::vector<ProfilePhase> phases;
   std::vector<std::string> regions;  ///< names, by number
-  std::vector<ProfileStack> stacks;  ///< of the window
+  ProfileStacks stacks;  ///< of the window
   std::vector<ProfileCall> calls;
   std::vector<cpu::CallStacks::Range> ranges;  ///< of the stack pointer
   cpu::MaskWatch::Stretch masked;              ///< the longest stretch with IRQs masked
@@ -59,7 +60,7 @@ struct ResultFile {
 /// functions that hold the inlined one, outermost first, each as `function|file`, with `;` between them.
 /// `polls`: 1 in a loop that only waits (poll_loops.h). Equal profiles give equal bytes.
 std::string profile_csv(const ProfileData& data, SourceLines& lines, const PollLoops& polls);
-/// paths.csv: `phase,path,clocks`, the clocks of each phase by call path, written as `inlined_in` is.
+/// paths.csv: `phase,path,clocks`, the clocks of each phase by call path, written as `inlined_in` is; see kShownDepth.
 std::string paths_csv(const ProfileData& data, SourceLines& lines);
 /// objects.csv: `object,address,size`, the objects of the programs from kObjectBytes on, by address.
 std::string objects_csv(std::span<const ElfImage* const> programs);
@@ -67,7 +68,7 @@ inline constexpr std::uint32_t kObjectBytes = 64;
 /// profile.callgrind: the window by instruction, with calls, as callgrind_annotate and KCachegrind read
 /// it.
 std::string profile_callgrind(const ProfileData& data, SourceLines& lines);
-/// profile.folded: a line `a;b;c clocks` for each call stack of the window, for flame graphs.
+/// profile.folded: a line `a;b;c clocks` for each call stack of the window, for flame graphs; see kShownDepth.
 std::string profile_folded(const ProfileData& data, SourceLines& lines);
 /// profile.txt: functions, lines and instructions of the window for people, and the phases.
 std::string profile_text(const ProfileData& data, SourceLines& lines);

@@ -174,8 +174,8 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   }
   const bool complete = replay_to_end(path, trace.info->start, context);
   path.finish();
-  std::vector<std::string> lost;
-  if (commands) side_output(lost, "--command-trace", [&] { commands->finish(); });
+  LostOutputs lost;
+  if (commands) side_output("the command trace", lost, [&] { commands->finish(); });
   if (!options.sets.empty() && path.waited_in_ram())
     Diagnostics::instance().configuration(fmt::format(
         "bursts of the EDMA waited {} core clocks in internal RAM for the core: as in the recorded run, which a run "
@@ -199,8 +199,8 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   if (around) dir.write("requests.csv", around->csv());
   say_note(dir.commit(complete), context);
   context.out << replay_words(stats, host, slowest);
-  context.out << fmt::format("results in {}\n", dir.folder().string()) << std::flush;
-  for (const std::string& why : lost) say_note(why + "; the other results are there", context);
+  context.out << fmt::format("results in {}\n", one_line(dir.folder().string(), std::string::npos)) << std::flush;
+  say_lost(lost, context);
   if (complete) return lost.empty() ? kExitDone : kExitWrongInput;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << "fovea: stopped before the end; the figures cover what was replayed\n";

@@ -10,15 +10,13 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/safe_json.h"
 
 namespace fovea::app {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr std::size_t kMaxConfigBytes = 16u << 20;
-constexpr std::size_t kMaxStatsBytes = 64u << 20;
 
 /// The files of all commands. RunDir refuses to write files that are not listed here.
 constexpr auto kFiles = std::to_array<std::string_view>(
@@ -34,10 +32,10 @@ struct Series {
 constexpr std::array<Series, 2> kSeries = {{{"frames", "frame_", ".png"}, {"camera", "frame_", ".png"}}};
 constexpr std::array<std::string_view, kSeries.size()> kFolders = {kSeries[0].folder, kSeries[1].folder};
 
-/// Reads a JSON file; returns a discarded value if it cannot be read or is not JSON.
-json read_json(const fs::path& file, std::size_t max_bytes) {
+/// A discarded value if the file cannot be read or is not JSON.
+json json_if_any(const fs::path& file) {
   try {
-    return json::parse(read_file(file, max_bytes), nullptr, false);
+    return read_json(file);
   } catch (const UserError&) {
     return json(json::value_t::discarded);
   }
@@ -76,7 +74,7 @@ bool is_run_config(const json& config) {
 
 /// A run that dies while it writes config.json leaves one that is cut off, and no JSON.
 bool is_foreign_config(const fs::path& file) {
-  const json config = read_json(file, kMaxConfigBytes);
+  const json config = json_if_any(file);
   return !config.is_discarded() && !is_run_config(config);
 }
 }  // namespace
@@ -87,7 +85,7 @@ const FolderKind kRunKind = {.owner = "a Fovea run",
                              .mark = "config.json",
                              .is_foreign_mark = is_foreign_config};
 
-bool is_run_folder(const fs::path& dir) { return is_run_config(read_json(dir / "config.json", kMaxConfigBytes)); }
+bool is_run_folder(const fs::path& dir) { return is_run_config(json_if_any(dir / "config.json")); }
 
 std::string RunFolder::results() const {
   return (complete ? "the results of " : "the partial results of ") + date;
@@ -99,12 +97,12 @@ RunFolder inspect_run_folder(const fs::path& dir) {
   std::error_code error;
   found.ours = is_run_folder(dir);
   if (!found.ours) return found;
-  const json host = read_json(dir / "host.json", kMaxConfigBytes);
+  const json host = json_if_any(dir / "host.json");
   if (host.is_object() && host.contains("command") && host["command"].is_array() &&
       !host["command"].empty() && host["command"][0].is_string())
     found.command = host["command"][0];
   if (fs::exists(fs::symlink_status(dir / "stats.json", error))) {
-    const json stats = read_json(dir / "stats.json", kMaxStatsBytes);
+    const json stats = json_if_any(dir / "stats.json");
     // Results that cannot be read count as complete, so that partial results do not replace them.
     found.complete =
         !(stats.is_object() && stats.contains("complete") && stats["complete"] == false);

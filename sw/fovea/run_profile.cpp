@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <utility>
 
-
 namespace fovea::app {
 
 void add_stacks(ProfileData& data, const cpu::CallStacks& stacks) {
-  for (const auto& p : stacks.paths()) data.stacks.push_back({p.functions, p.clocks});
+  data.stacks = stacks.paths();
   for (const auto& c : stacks.calls()) data.calls.push_back({c.from, c.to, c.count, c.clocks});
   data.ranges = stacks.ranges();
-}
-
-std::vector<ProfileStack> stacks_of(const cpu::ClockProfile& profile, std::size_t section) {
-  std::vector<ProfileStack> out;
-  for (const auto& p : profile.stacks.paths_of(section)) out.push_back({p.functions, p.clocks});
-  return out;
 }
 
 RunProfile::RunProfile(board::Board& board, bool whole_run,
@@ -84,15 +77,15 @@ ProfileData RunProfile::finish(const cpu::Counts& end, const std::string& progra
   data.interrupts = delays_;
   for (const auto& s : p.snapshots()) remaps_[s.at] = s;
   if (whole_run_) {
-    data.phases = {{"run", true, p.rows(kBoot), stacks_of(p, kBoot)}};
+    data.phases = {{"run", true, p.rows(kBoot), p.stacks.paths_of(kBoot)}};
     return data;
   }
   const bool opened = opened_;
-  data.phases = {{"boot", !opened, p.rows(kBoot), stacks_of(p, kBoot)},
-                 {"lut", !opened, p.rows(kLut), stacks_of(p, kLut)},
-                 {"lock", !opened, p.rows(kLock), stacks_of(p, kLock)},
-                 {"frames", true, p.rows(kFrames), stacks_of(p, kFrames)},
-                 {"remap", true, p.rows(kRemap), stacks_of(p, kRemap)}};
+  data.phases = {{"boot", !opened, p.rows(kBoot), p.stacks.paths_of(kBoot)},
+                 {"lut", !opened, p.rows(kLut), p.stacks.paths_of(kLut)},
+                 {"lock", !opened, p.rows(kLock), p.stacks.paths_of(kLock)},
+                 {"frames", true, p.rows(kFrames), p.stacks.paths_of(kFrames)},
+                 {"remap", true, p.rows(kRemap), p.stacks.paths_of(kRemap)}};
   return data;
 }
 

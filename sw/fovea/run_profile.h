@@ -12,8 +12,6 @@
 
 namespace fovea::app {
 
-/// All clocks of a section by call path.
-std::vector<ProfileStack> stacks_of(const cpu::ClockProfile& profile, std::size_t section);
 /// Puts what a core's profile counted of call stacks into `data`.
 void add_stacks(ProfileData& data, const cpu::CallStacks& stacks);
 

@@ -1,4 +1,4 @@
-// Outputs beside the results: one that cannot be written does not take the results along.
+// Outputs beside the results of a run: if one of them fails, the results are kept.
 #pragma once
 #include <new>
 #include <string>
@@ -9,16 +9,19 @@
 
 namespace fovea::app {
 
-/// Calls `f`, which writes the output that `option` asks for. If the host refuses it (a full disk, no memory, an
-/// encoder that has ended), the reason joins `lost` as a sentence, and the caller goes on with the results.
+/// Why outputs that were asked for are missing, one sentence for each. A run with any has status 2.
+using LostOutputs = std::vector<std::string>;
+
+/// Calls make(), which makes the output `name`. What the host lacks (memory, room on the disk) goes to `lost`; own
+/// defects and requests to stop go on.
 template <class F>
-void side_output(std::vector<std::string>& lost, std::string_view option, F&& f) {
+void side_output(std::string_view name, LostOutputs& lost, F make) {
   try {
-    f();
+    make();
   } catch (const UserError& e) {
-    lost.emplace_back(e.what());
+    lost.push_back(std::string(name) + " is missing: " + e.what());
   } catch (const std::bad_alloc&) {
-    lost.push_back(std::string(option) + ": out of memory");
+    lost.push_back(std::string(name) + " is missing: out of memory");
   }
 }
 

@@ -18,6 +18,7 @@
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/perfetto/perfetto_request.h"
 #include "sw/fovea/profile_report.h"
+#include "sw/fovea/side_output.h"
 #include "sw/fovea/register_log.h"
 #include "sw/fovea/rgb_image.h"
 #include "sw/fovea/run_limits.h"
@@ -103,6 +104,7 @@ struct RunResult {
   std::string untyped;       ///< the step of uart0.input that was not reached; empty: all were
   std::string registers;  ///< the register log, if requested
   ProfileResult profile;  ///< with --profile
+  LostOutputs lost = {};  ///< of what was asked for beside the results
   std::string hazards;    ///< a sentence about the coherency hazards that were found; empty: none
   std::vector<std::string> lost = {};  ///< why outputs beside the results could not be written, a sentence each
 };

@@ -55,6 +55,7 @@ head -c 600 "$firmware/hello.elf" >"$out/cut.elf"
 cp "$firmware/hello.elf" "$out/outside.elf"
 printf '\x00\x00\x00\x50\x00\x00\x00\x50' |
   dd of="$out/outside.elf" bs=1 seek=$((52 + 8)) conv=notrunc status=none
+printf '\0\0\0\120' | dd of="$out/outside.elf" bs=1 seek=24 conv=notrunc status=none  # and begins there
 
 run() { "$fovea" run "$@" -o "$out/run"; }
 # What the firmware refuses is the guest's failure, with its sentence, and not after run.start_limit only.
@@ -88,6 +89,7 @@ if [ -e "$out/run.tmp" ]; then
   echo "a run with wrong input left $out/run.tmp"
   failures=$((failures + 1))
 fi
+expect mobile_memory 2 'ddr.part' 'firmware.elf' 'fovea replay TRACE' -- run "$out/small.yaml" -s ddr.part=mt46h32m16lf
 expect empty_out 2 "output folder ''" -- "$fovea" run "$out/small.yaml" -o ''
 commit='[0-9a-f]{12}(, modified)?'
 prefix=$(git -C "$source" rev-parse --show-prefix 2>/dev/null) && [ -z "$prefix" ] || commit=unknown  # a copy has none

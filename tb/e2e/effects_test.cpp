@@ -233,6 +233,8 @@ TEST(FootageNotesTest, SayWhatTheCameraChanges) {
             Notes{"footage of 480x640 is stretched to 4:3, 78 % wider"});
   EXPECT_EQ(notes(film, 640, 360, {{25}, 1, 1920, 1080}),
             Notes{"footage of 1920x1080 is stretched to 4:3, 25 % narrower"}) << "scaled when read";
+  EXPECT_EQ(notes(film, 576, 720, {{25}, 16.0 / 15, 720, 576}),
+            Notes{"footage of 576x720 is stretched to 4:3, 78 % wider"}) << "turned when read, with its pixels";
   EXPECT_EQ(notes(film, 640, 480, {{60}}),
             Notes{"footage of 60 frames/s is shown at 25 frames/s, 0.417 times as fast"});
   EXPECT_EQ(notes({{"camera.kind", "video"}, {"video.standard", "ntsc"}}, 640, 480, {{25}}),
@@ -243,6 +245,38 @@ TEST(FootageNotesTest, SayWhatTheCameraChanges) {
   EXPECT_EQ(notes(film, 640, 480, {{25}}, 250),
             Notes{"at most the first 250 frames of the footage are used, over and over"});
   EXPECT_EQ(notes({{"camera.kind", "chart"}}, 1280, 720, {{60}}), Notes{});
+}
+
+// Fields in the order that is sent need no word; in the other one, or mixed by scaling or a lens, they do.
+TEST(FootageNotesTest, SayWhatIsNotFollowedOfTheStream) {
+  const auto notes = [](const Keys& keys, unsigned width, unsigned height, const app::FilmInfo& info) {
+    Settings s(keys);
+    return app::footage_notes(s.params, {RgbImage{width, height, {}}}, info);
+  };
+  const auto fields = [](app::FilmInfo::Fields f, double aspect) { return app::FilmInfo{{25}, aspect, 0, 0, f}; };
+  using testing::AllOf;
+  using testing::ElementsAre;
+  using testing::HasSubstr;
+  const Keys film{{"camera.kind", "video"}};
+  const auto top = app::FilmInfo::Fields::kTopFirst, bottom = app::FilmInfo::Fields::kBottomFirst;
+  EXPECT_THAT(notes(film, 720, 576, fields(top, 16.0 / 15)), testing::IsEmpty());
+  EXPECT_THAT(notes(film, 720, 576, fields(bottom, 16.0 / 15)),
+              ElementsAre(AllOf(HasSubstr("bottom field first, and the top one is sent first"),
+                                HasSubstr("fieldorder=tff"))));
+  EXPECT_THAT(notes(film, 720, 480, fields(top, 8.0 / 9)),
+              ElementsAre(HasSubstr("top field first: its fields are taken")));
+  const Keys ntsc{{"camera.kind", "video"}, {"video.standard", "ntsc"}, {"camera.video_fov", "0deg"}};
+  Keys studio = ntsc;
+  studio["tvp5146.crop_525"] = "studio";
+  const auto rate = [](app::FilmInfo info) { return info.rate = Frequency(30000, 1001), info; };
+  EXPECT_THAT(notes(ntsc, 720, 480, rate(fields(bottom, 8.0 / 9))), ElementsAre(HasSubstr("fieldorder=tff")));
+  EXPECT_THAT(notes(studio, 720, 480, rate(fields(top, 8.0 / 9))), ElementsAre(HasSubstr("fieldorder=bff")));
+  EXPECT_THAT(notes(studio, 720, 480, rate(fields(bottom, 8.0 / 9))), testing::IsEmpty());
+  for (const char* hdr : {"smpte2084", "arib-std-b67", "linear", "log100"})
+    EXPECT_THAT(notes(film, 640, 480, {{25}, 1, 640, 480, app::FilmInfo::Fields::kNone, hdr}),
+                ElementsAre(HasSubstr(std::string("transfer function ") + hdr))) << hdr;
+  for (const char* usual : {"bt709", "smpte170m", "iec61966-2-1", "unknown"})
+    EXPECT_THAT(notes(film, 640, 480, {{25}, 1, 640, 480, app::FilmInfo::Fields::kNone, usual}), testing::IsEmpty());
 }
 
 // Calibrations that cannot belong to the picture, at the limit and one beyond.

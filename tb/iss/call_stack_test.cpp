@@ -1,5 +1,6 @@
 // Call stacks of small target programs: calls and returns, tail calls, long jumps, two tasks, nested
 // interrupts. Each program is checked in full: every clock of the run is in one stack.
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -11,6 +12,22 @@
 
 namespace fovea::cpu::test {
 namespace {
+
+/// The functions of a path, outermost first.
+std::vector<std::uint32_t> functions_of(const std::vector<CallStacks::Path>& paths, CallStacks::Path path) {
+  std::vector<std::uint32_t> out;
+  for (out.push_back(path.function); path.caller; out.push_back(path.function)) path = paths.at(path.caller);
+  std::reverse(out.begin(), out.end());
+  return out;
+}
+
+using StackClocks = std::map<std::vector<std::uint32_t>, std::uint64_t>;
+StackClocks by_functions(const std::vector<CallStacks::Path>& paths) {
+  StackClocks out;
+  for (const auto& p : paths)
+    if (p.clocks) out[functions_of(paths, p)] += p.clocks;
+  return out;
+}
 
 /// A program whose functions begin at the labels called f_NAME, and end at the next one.
 struct Traced {
@@ -37,9 +54,11 @@ struct Traced {
     Counts end = m.core.counts();
     m.core.finish_profile(end);
     std::uint64_t all = 0;
-    for (const CallStacks::Path& path : profile.stacks.paths()) {
+    const auto paths = profile.stacks.paths();
+    for (const CallStacks::Path& path : paths) {
+      if (path.clocks == 0) continue;
       std::string text_of;
-      for (const std::uint32_t f : path.functions)
+      for (const std::uint32_t f : functions_of(paths, path))
         text_of += (text_of.empty() ? "" : ";") + (names.contains(f) ? names[f] : std::to_string(f));
       clocks[text_of] += path.clocks;
       all += path.clocks;
@@ -404,7 +423,6 @@ struct Watched final : CallStacks::Watcher {
     clocks[{functions.begin(), functions.end()}] += end - begin;
   }
 };
-using StackClocks = std::map<std::vector<std::uint32_t>, std::uint64_t>;
 
 class StacksByHandTest : public ::testing::Test {
  protected:
@@ -449,15 +467,34 @@ TEST_F(StacksByHandTest, EachSectionHasItsClocksWhetherTheyAreCountedOrNot) {
   stacks.enter(50, true, 0);
   stacks.count(60, false);
   const auto clocks_of = [this](std::size_t section) {
-    StackClocks out;
-    for (const auto& p : stacks.paths_of(section)) out[p.functions] = p.clocks;
-    return out;
+    return by_functions(stacks.paths_of(section));
   };
   EXPECT_EQ(clocks_of(7), (StackClocks{{{0x100, 0x200}, 10}, {{0x100}, 5}}));
   EXPECT_EQ(clocks_of(0), (StackClocks{{{0x100}, 30}, {{0x100, 0x200}, 5}}));
-  StackClocks counted;
-  for (const auto& p : stacks.paths()) counted[p.functions] = p.clocks;
+  const StackClocks counted = by_functions(stacks.paths());
   EXPECT_EQ(counted, clocks_of(0));
+}
+
+// 100,000 activations of a function are as many paths of one function each, not of 100,000.
+TEST(CallStackTest, ADeepRecursionIsATree) {
+  constexpr std::uint32_t kDeep = 100'000, kBase = 0x8000'0000;
+  CallStacks stacks;
+  stacks.set_functions({{0x100, 0x200}, {0x200, 0x300}});
+  stacks.start(10, 0x100);
+  stacks.count(10, true);
+  for (std::uint32_t n = 0; n < kDeep; ++n)
+    stacks.call(30 + n, n ? 0x210 : 0x110, 0x200, n ? 0x214 : 0x114, kBase - 4 * n);
+  stacks.count(30 + kDeep, false);
+  const auto paths = stacks.paths();
+  std::uint64_t clocks = 0;
+  std::uint32_t depth = 0;
+  for (std::uint32_t n = 1; n < paths.size(); ++n) {
+    EXPECT_LT(paths[n].caller, n);
+    clocks += paths[n].clocks;
+  }
+  for (std::uint32_t n = static_cast<std::uint32_t>(paths.size()) - 1; n; n = paths[n].caller) ++depth;
+  EXPECT_EQ(clocks, 20u + kDeep);
+  EXPECT_EQ(depth, kDeep + 1);
 }
 
 // The clocks up to a reset belong to the function that it ended.
@@ -465,8 +502,7 @@ TEST_F(StacksByHandTest, AResetEndsWhatRanBefore) {
   stacks.call(30, 0x110, 0x200, 0x114, 0x1000);
   stacks.start(70, 0x300);
   stacks.count(100, false);
-  StackClocks counted;
-  for (const auto& p : stacks.paths()) counted[p.functions] = p.clocks;
+  const StackClocks counted = by_functions(stacks.paths());
   const StackClocks expected{{{0x100}, 20}, {{0x100, 0x200}, 40}, {{0x300}, 30}};
   EXPECT_EQ(counted, expected);
   EXPECT_EQ(watched.clocks, expected);

@@ -1,6 +1,10 @@
 // Baselines: what fails, what is refused, and what blessing leaves as it was.
 #include "sw/fovea/regression/check.h"
 
+#include <sys/resource.h>
+
+#include <algorithm>
+
 #include "sw/fovea/regression/compare.h"
 #include "sw/fovea/regression/first_baseline.h"
 #include "tb/regression/run_maker.h"
@@ -362,6 +366,35 @@ TEST(NearestMetricTest, IsTheOneWithTheFewestChanges) {
   EXPECT_EQ(nearest("efgh", {"abcefgh"}), "");
   EXPECT_EQ(nearest("abcd", {"abcdefg"}), "abcdefg");
   EXPECT_EQ(nearest("abcdef", {"abXYef", "abcdeX", "abcXYf"}), "abcdeX");
+}
+
+// Each hint compares the name with all others.
+TEST_F(CheckTest, HintsForUnknownFiguresHaveALimit) {
+  RunFigures run;
+  Baseline baseline;
+  for (int n = 0; n < 5000; ++n) {
+    run.metrics["known." + std::to_string(n)].value = 1;
+    Expectation e;
+    e.name = "knwon." + std::to_string(n);
+    baseline.metrics.push_back(e);
+  }
+  std::size_t hints = 0;
+  for (const Finding& f : check_run(run, baseline, true).findings) {
+    EXPECT_EQ(f.verdict, Verdict::kFail);
+    hints += f.words.find("did you mean") != std::string::npos;
+  }
+  EXPECT_EQ(hints, 20u);
+}
+
+// 20,000 lines whose first and last change: a table of all pairs would be 3 GB.
+TEST(UnifiedDiffTest, NeedsNoMoreMemoryThanItsLines) {
+  std::string before = "a\n", after = "b\n";
+  for (int n = 0; n < 20'000; ++n) before += "same\n", after += "same\n";
+  const rlimit all{RLIM_INFINITY, RLIM_INFINITY}, little{std::size_t{1} << 30, RLIM_INFINITY};
+  ::setrlimit(RLIMIT_AS, &little);
+  const std::string diff = unified_diff("f", before + "a\n", after + "b\n");
+  ::setrlimit(RLIMIT_AS, &all);
+  EXPECT_EQ(std::count(diff.begin(), diff.end(), '\n'), 2 + 2 * (1 + 2 + 3)) << diff;
 }
 
 TEST(UnifiedDiffTest, IsWhatDiffWouldPrint) {

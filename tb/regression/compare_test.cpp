@@ -61,6 +61,22 @@ TEST_F(CompareTest, TheLargestShareOfTheTimeStandsFirst) {
   EXPECT_THAT(out.str(), AllOf(HasSubstr("of a frame\n"), HasSubstr("+20.0 %\n"), HasSubstr("+4.0 %\n")));
 }
 
+// No figure of Fovea's is so, but a folder of results is a file of somebody.
+TEST_F(CompareTest, WholeFiguresBelowZeroAndBeyondSixtyFourBitsStayWhatTheyAre) {
+  set("a.small", "-5", "-9223372036854775808", "1");
+  set("b.large", "18446744073709551615", "1e300", "1");
+  set("c.count", "7", "9007199254740993", "1");
+  EXPECT_EQ(cli({"compare", one.write(dir, "one").string(), two.write(dir, "two").string(), "--json"}), 1);
+  std::map<std::string, nlohmann::json> rows;
+  const auto printed = nlohmann::json::parse(out.str());
+  for (const auto& row : printed["figures"]) rows[row["name"]] = row;
+  EXPECT_EQ(rows["a.small"]["a"].dump(), "-5");
+  EXPECT_EQ(rows["a.small"]["b"].dump(), "-9223372036854775808");
+  EXPECT_EQ(rows["b.large"]["a"].get<double>(), 0x1p64);
+  EXPECT_EQ(rows["b.large"]["b"].get<double>(), 1e300);
+  EXPECT_EQ(rows["c.count"]["a"].dump(), "7");
+}
+
 TEST_F(CompareTest, ParametersOfOneOnlyAreOneLineUnlessTheyAreFew) {
   for (int n = 0; n < 6; ++n) {
     two.parameters["other.key" + std::to_string(n)] = "1";

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "model/common/check.h"
+#include "model/trace/core/foreign_trace.h"
 #include "model/trace/core/text_trace.h"
 #include "tb/replay/support.h"
 
@@ -168,6 +169,47 @@ TEST(TextTraceTest, ItStartsWithTheFirstRequest) {
   std::string late;
   for (int i = 0; i < 2'000; ++i) late += "900 0 R 0x0 4\n";
   EXPECT_EQ(start(late + "30 1 R 0x0 4\n"), 30u);
+}
+
+/// A file of two gigabytes that begins as `head` and has no line feed behind it.
+class EndlessLine final : public trace::ByteSource {
+ public:
+  EndlessLine(std::string head, std::uint64_t& asked) : head_(std::move(head)), asked_(asked) {}
+  std::uint64_t size() const override { return std::uint64_t{2} << 30; }
+  std::size_t read(std::uint64_t offset, char* to, std::size_t bytes) const override {
+    asked_ += bytes;
+    for (std::size_t i = 0; i < bytes; ++i) to[i] = offset + i < head_.size() ? head_[offset + i] : '\0';
+    return bytes;
+  }
+
+ private:
+  std::string head_;
+  std::uint64_t& asked_;
+};
+
+TEST(TextTraceTest, ALineThatDoesNotEndIsNotReadWhole) {
+  for (const bool foreign : {false, true}) {
+    std::uint64_t asked = 0;
+    const std::string head = foreign ? "0x1000 R\n" : kGood;
+    try {
+      auto bytes = std::make_unique<EndlessLine>(head, asked);
+      Record r;
+      if (foreign) {
+        trace::ForeignReading reading;
+        reading.format = trace::ForeignFormat::kRamulator;
+        trace::ForeignTrace t("t", std::move(bytes), reading);
+        while (t.next(0, r)) {
+        }
+      } else {
+        TextTrace t("t", std::move(bytes));
+      }
+      ADD_FAILURE() << "two gigabytes are no line";
+    } catch (const UserError& e) {
+      EXPECT_THAT(e.what(), HasSubstr("trace 't': the line that begins at byte " + std::to_string(head.size()) +
+                                      " has no end within"));
+    }
+    EXPECT_LT(asked, 4u << 20);
+  }
 }
 
 TEST(TextTraceTest, NoTextCrashesIt) {

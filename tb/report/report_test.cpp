@@ -1,6 +1,7 @@
 // sw/fovea/report: what stands on the page, read back from it.
 #include <fmt/format.h>
 
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
@@ -100,6 +101,56 @@ TEST(LoadTest, RefusesWhatIsNoRunInOneLine) {
               HasSubstr("the run in it was never finished (it has no stats.json)"));
   dir.write("unfinished/stats.json", "[1, 2]");
   EXPECT_THAT(error(dir / "unfinished"), HasSubstr("not a file of JSON; it is damaged"));
+}
+
+// Values are copied and written by recursion, so how deep they are is counted before.
+TEST(LoadTest, DeepJsonIsRefusedBeforeItIsRead) {
+  const TempDir dir;
+  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+  HandMade run = two_frames();
+  run.experiment = "x\", \"more\": " + deep + ", \"y\": \"";
+  EXPECT_THAT(user_error([&] { load_results(run.write(dir), {}); }), HasSubstr("it is not the folder of a Fovea run"));
+  two_frames().write(dir);
+  dir.write("run/stats.json", "{\"frame.rate\": {\"value\": 1, \"unit\": " + deep + "}}");
+  EXPECT_THAT(user_error([&] { load_results(dir / "run", {}); }), HasSubstr("not a file of JSON; it is damaged"));
+  // Brackets in a text are none.
+  run.experiment = std::string(1000, '[') + "\\\"[";
+  EXPECT_EQ(load_results(run.write(dir), {}).experiment, std::string(1000, '[') + "\"[");
+}
+
+// The page looks for names one by one, and a stack is a nested value.
+TEST(PageTest, AHundredThousandFiguresAndFunctionsOnOneStack) {
+  const TempDir dir;
+  HandMade run = two_frames();
+  const fs::path folder = run.write(dir);
+  std::string figures = "{\"complete\": true";
+  for (int n = 0; n < 100'000; ++n) figures += ", \"zz." + std::to_string(n) + "\": {\"value\": 1, \"unit\": \"1\"}";
+  dir.write("run/stats.json", figures + "}");
+  EXPECT_THAT(user_error([&] { load_results(folder, {}); }), HasSubstr("figures or parameters; allowed: up to 5000"));
+  for (int n = 0; n < 1000; ++n) run.stats.push_back({"zz." + std::to_string(n), std::uint64_t{1}, "1", "d"});
+  run.write(dir);
+  std::string stack;
+  for (int n = 0; n < 100'000; ++n) stack += "a;";
+  dir.write("run/profile.folded", stack + "last 1000\n");
+  const std::clock_t begun = std::clock();
+  const json data = data_of(one_page(folder));
+  EXPECT_LT(std::clock() - begun, 20 * CLOCKS_PER_SEC);
+  EXPECT_TRUE(data["runs"][0]["stats"].contains("zz.999"));
+  std::vector<std::string> names;
+  const json* node = &data["runs"][0]["stacks"];
+  for (; node->contains("children"); node = &(*node)["children"][0]) names.push_back((*node)["name"]);
+  EXPECT_EQ((*node)["name"], "last");
+  ASSERT_EQ(names.size(), 202u);
+  EXPECT_EQ(names.back(), "...");
+}
+
+TEST(LoadTest, ARowOfCommasIsRefusedBeforeItIsKept) {
+  const TempDir dir;
+  const fs::path folder = two_frames().write(dir);
+  dir.write("run/profile.csv", std::string(1'000'000, ','));
+  EXPECT_THAT(user_error([&] { load_results(folder, {}); }), HasSubstr("profile.csv:1: a row of more than 512 fields"));
+  dir.write("run/profile.csv", std::string(kMaxTableBytes + 1, '\n'));
+  EXPECT_THAT(user_error([&] { load_results(folder, {}); }), HasSubstr("is larger than"));
 }
 
 TEST(LoadTest, PartialResultsAndOtherVersionsNeedTheirOption) {

@@ -190,6 +190,12 @@ TEST_F(CliTest, WhatTheHostRefusesIsStatusTwoAndNoDefect) {
   EXPECT_FALSE(fs::exists(dir / "r.tmp"));
 }
 
+TEST_F(CliTest, AnOutputBesideTheResultsTakesThemNotAlong) {
+  EXPECT_EQ(run({"-s", "run.mode=lost_output"}), 2);
+  EXPECT_THAT(err.str(), HasSubstr("error: the toy is missing: out of memory; all other results are kept\n"));
+  EXPECT_TRUE(fs::exists(result / "stats.json"));
+}
+
 TEST_F(CliTest, ASignalBeforeTheSimulationLeavesNoFolder) {
   signal = SIGTERM;
   EXPECT_EQ(run({"-s", "run.mode=stopped_decoding"}), 143);
@@ -426,7 +432,7 @@ TEST_F(ProgramTest, AFilmThatFailsTakesNoResultsAlong) {
       start({"run", experiment, "-s", "run.frames=3", "-s", "run.mode=good", "--mp4", "-o", result.string()});
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.err,
-              AllOf(HasSubstr("display.mp4"), HasSubstr("no room"), HasSubstr("the other results are there")));
+              AllOf(HasSubstr("display.mp4"), HasSubstr("no room"), HasSubstr("all other results are kept")));
   EXPECT_EQ(json::parse(read_text(result / "stats.json"))["complete"], true);
   EXPECT_TRUE(fs::exists(result / "frames" / FrameWriter::file_name(2)));
   EXPECT_FALSE(fs::exists(result / "display.mp4"));

@@ -165,7 +165,7 @@ TEST_F(ElfTest, EntryPointIsInTheBytesOfASegmentAndOfItsInstructionSet) {
   EXPECT_EQ(ElfImage::load(with_entry(arm)).entry(), arm);
   EXPECT_EQ(ElfImage::load(with_entry(thumb + 1)).entry(), thumb + 1);
   EXPECT_THAT(refusal(0x0400'0000), AllOf(HasSubstr("entry.elf"), HasSubstr("entry point 0x04000000 is in no segment"),
-                                          HasSubstr("physical address")));
+                                          HasSubstr("an address in the bytes of one")));
   EXPECT_THAT(refusal(image.find("zeroed")->address & ~3u), HasSubstr("is in no segment"));
   EXPECT_THAT(refusal(arm + 2), HasSubstr("no address of an ARM instruction"));
   EXPECT_THAT(refusal(arm + 1), HasSubstr("selects Thumb state, but the code there is ARM"));

@@ -79,6 +79,7 @@ class FakeBoard : public app::Simulation {
     result.timeline = {{kPsPerMs, 2 * kPsPerMs, {64}, {0}}};
     result.stalls = {{"dcache", "lut", "vpbe", 7}};
     result.latency = {{"arm_d", "read", "first", 1000, 2000, 3}};
+    if (params_.mode.is("lost_output")) app::side_output("the toy", result.lost, [] { throw std::bad_alloc(); });
     result.uart = "hello from the guest\n";
     return result;
   }
@@ -95,7 +96,7 @@ class FakeBoard : public app::Simulation {
                    "good",
                    {"good", "slow", "guest_failure", "late_failure", "defect", "broken_check",
                     "user_error", "not_modelled", "out_of_memory", "out_of_memory_in_kernel",
-                    "no_thread", "not_modelled_in_kernel", "stopped_decoding", "escape"},
+                    "no_thread", "not_modelled_in_kernel", "stopped_decoding", "escape", "lost_output"},
                    "how it ends | or not",
                    Origin::kAssumed,
                    "",

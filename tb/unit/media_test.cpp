@@ -71,6 +71,44 @@ std::string png_1x1(char depth, char colour, const std::string& idat, const std:
          idat_crc + "\0\0\0\0IEND\xae\x42\x60\x82"s;
 }
 
+/// Of PNG, bit by bit (ISO 3309).
+std::uint32_t crc_of(const std::string& bytes) {
+  std::uint32_t crc = ~0u;
+  for (const char c : bytes) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int k = 0; k < 8; ++k) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0);
+  }
+  return ~crc;
+}
+
+TEST(PngTest, AnOrientationThatIsNotFollowedIsSaid) {
+  using namespace std::string_literals;
+  const TempDir dir;
+  const auto big = [](std::uint32_t n) {
+    return std::string{static_cast<char>(n >> 24), static_cast<char>(n >> 16), static_cast<char>(n >> 8),
+                       static_cast<char>(n)};
+  };
+  const auto warnings = [&](const std::string& exif) {
+    std::string bytes = as_text(encode_png(pattern(4, 3), 1));
+    bytes.insert(bytes.find("IDAT") - 4, big(static_cast<std::uint32_t>(exif.size())) + "eXIf" + exif +
+                                             big(crc_of("eXIf" + exif)));
+    Diagnostics::instance().clear();
+    EXPECT_EQ(read_png(dir.write("p.png", bytes)).rgb, pattern(4, 3).rgb);
+    std::string out;
+    for (const auto& [what, count] : Diagnostics::instance().counts()) out += what.second;
+    Diagnostics::instance().clear();
+    return out;
+  };
+  // TIFF 6.0: byte order, 42, place of the directory; entries of tag, type, count and value.
+  const std::string little = "II*\0\x08\0\0\0\x01\0"s, tag = "\x12\x01\x03\0\x01\0\0\0"s;
+  EXPECT_THAT(warnings(little + tag + "\x06\0\0\0\0\0\0\0"s),
+              HasSubstr("p.png' is taken as it is stored: its EXIF orientation, 6,"));
+  EXPECT_THAT(warnings("MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x03\0\0"s), HasSubstr("orientation, 3,"));
+  EXPECT_EQ(warnings(little + tag + "\x01\0\0\0\0\0\0\0"s), "") << "as it is";
+  EXPECT_EQ(warnings(little + "\x0f"s + tag.substr(1) + "\x06\0\0\0"s), "") << "another tag";
+  EXPECT_EQ(warnings("II*\0\xff\xff\xff\xff"s), "") << "a directory that is not there";
+}
+
 TEST(PngTest, GreyAndAlphaBecomeRgb) {
   using namespace std::string_literals;
   TempDir dir;
@@ -365,6 +403,27 @@ TEST_F(FfmpegTest, AFilmTellsItsRateAndThePixelsShape) {
   EXPECT_EQ(info.height, 48u);
   EXPECT_TRUE(film_info(dir / "f.mp4", {}, "no-such-ffprobe").rate.stopped());
   EXPECT_TRUE(film_info(dir.write("x.mp4", "x")).rate.stopped());
+}
+
+TEST_F(FfmpegTest, AFilmTellsItsFieldOrderAndTransfer) {
+  const auto info = [&](const std::string& how, const char* name) {
+    make("-f lavfi -i testsrc=s=720x576:r=25:d=0.04 -pix_fmt yuv420p " + how + " '" + (dir / name).string() + "'");
+    return film_info(dir / name);
+  };
+  using Fields = FilmInfo::Fields;
+  EXPECT_EQ(info("-vf setfield=prog -c:v libx264", "p.mp4").fields, Fields::kNone);
+  EXPECT_EQ(info("-c:v dvvideo", "b.avi").fields, Fields::kBottomFirst) << "DV does not say it of the stream";
+  EXPECT_EQ(info("-vf setfield=tff -flags +ilme+ildct -c:v mpeg2video", "t.mpg").fields, Fields::kTopFirst);
+  EXPECT_EQ(info("-c:v libx264 -color_trc smpte2084", "q.mp4").transfer, "smpte2084");
+  EXPECT_EQ(info("-c:v libx264", "u.mp4").transfer, "unknown");
+}
+
+TEST_F(FfmpegTest, AnEmptyPictureIsTheFilesFault) {
+  const auto program = dir.write("ffmpeg", "#!/bin/sh\nprintf 'P6\\n0 0\\n255\\n'\n");
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const auto file = clip(1);
+  EXPECT_THAT(user_error([&] { decode_frames(file, {.program = program.string()}); }),
+              HasSubstr("its picture of 0x0 pixels is empty"));
 }
 
 TEST_F(FfmpegTest, MissingFileAndMissingProgramSayWhat) {

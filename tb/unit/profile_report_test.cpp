@@ -102,7 +102,7 @@ class ProfileReportTest : public testing::Test {
     data.regions = {"none", "other", "sdram, slow"};
     const auto dcache = stall(cpu::Cause::kDcache);
     data.phases = {
-        {"boot", false, {{start, ProfileRow::kIssue, 0, 0, 7, 5}}, {{{start}, 7}}},
+        {"boot", false, {{start, ProfileRow::kIssue, 0, 0, 7, 5}}, {{}, {0, start, 7}}},
         {"frames",
          true,
          {{start, ProfileRow::kIssue, 0, 0, 20, 10},
@@ -112,7 +112,8 @@ class ProfileReportTest : public testing::Test {
           {inner, dcache, 2, static_cast<std::uint8_t>(cpu::kService), 300, 0},
           {inner, dcache, 2, static_cast<std::uint8_t>(cpu::kCore), 30, 0},
           {0x10, stall(cpu::Cause::kInterlock), 0, static_cast<std::uint8_t>(cpu::kCore), 10, 0}}}};
-    data.stacks = {{{start}, 60}, {{start, image.find("outer")->address}, 430}, {{start}, 5}, {{}, 5}};
+    // The program was started twice.
+    data.stacks = {{0, 0, 5}, {0, start, 60}, {1, image.find("outer")->address, 430}, {0, start, 5}};
     data.calls = {{start, image.find("outer")->address, 50, 430}};
   }
   ElfImage image = ElfImage::load(kInlined);
@@ -138,6 +139,23 @@ TEST_F(ProfileReportTest, RowsByFunctionLineCauseRegionAndCulprit) {
 
 TEST_F(ProfileReportTest, FoldedStacks) {
   EXPECT_EQ(profile_folded(data, lines), "(unknown) 5\n_start 65\n_start;outer 430\n");
+}
+
+// 100,000 calls of a function by itself are a few hundred lines; all clocks are in them.
+TEST_F(ProfileReportTest, FilesDoNotGrowWithTheDepthOfARecursion) {
+  const std::uint32_t outer = image.find("outer")->address;
+  data.stacks = {{}, {0, start, 1}};
+  for (std::uint32_t n = 1; n <= 100'000; ++n) data.stacks.push_back({n, outer, 3});
+  data.stacks.push_back({100'001, start, 7});
+  data.phases.back().stacks = data.stacks;
+  const std::string text = profile_folded(data, lines);
+  std::string deepest = "_start";
+  for (std::size_t n = 1; n < kShownDepth; ++n) deepest += ";outer";
+  EXPECT_THAT(text, HasSubstr("\n" + deepest + " 3\n"));
+  EXPECT_THAT(text, HasSubstr("\n" + deepest + ";...;outer " + std::to_string(3 * (100'001 - kShownDepth)) + "\n"));
+  EXPECT_THAT(text, HasSubstr("\n" + deepest + ";...;_start 7\n"));
+  EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')), kShownDepth + 2);
+  EXPECT_LT(paths_csv(data, lines).size(), std::size_t{1} << 20);
 }
 
 TEST_F(ProfileReportTest, TableNamesTheLargestCauses) {

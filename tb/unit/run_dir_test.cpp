@@ -468,9 +468,19 @@ TEST(OneLineTest, EscapesControlCharactersAndCutsLongText) {
   EXPECT_EQ(one_line(std::string(500, 'x'), 10), "xxxxxxxxxx...");
   EXPECT_EQ(one_line("\x7f\r\b"), "\\x7f\\x0d\\x08");
   EXPECT_EQ(one_line("\xc2\x9b" "31m \xc2\x80\xc2\x9f"), "\\xc2\\x9b31m \\xc2\\x80\\xc2\\x9f");
-  EXPECT_EQ(one_line("\xc2\xa0 \xc3\xa4\xe2\x80\x9c \xc2"), "\xc2\xa0 \xc3\xa4\xe2\x80\x9c \xc2")
+  EXPECT_EQ(one_line("\xc2\xa0 \xc3\xa4\xe2\x80\x9c \xc2"), "\xc2\xa0 \xc3\xa4\xe2\x80\x9c \\xc2")
       << "letters of other languages stay";
   EXPECT_EQ(printable("a\nb\x1b[31m"), "a\nb\\x1b[31m");
+  // RFC 3629: the ends of what is a character, and what is none.
+  for (const char* good : {"\xc2\xa0", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80", "\xef\xbf\xbd",
+                           "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"})
+    EXPECT_EQ(printable(good), good);
+  for (const char* bad : {"\x80", "\xbf", "\xc0\x80", "\xc1\xbf", "\xe0\x9f\xbf", "\xed\xa0\x80", "\xf0\x8f\xbf\xbf",
+                          "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xff", "\xe2\x80", "\xf0\x90\x80"}) {
+    const std::string text = printable(bad);
+    EXPECT_TRUE(std::all_of(text.begin(), text.end(), [](char c) { return c >= 0x20 && c < 0x7f; })) << text;
+    EXPECT_EQ(text.size(), 4 * std::string_view(bad).size()) << text;
+  }
 }
 
 }  // namespace

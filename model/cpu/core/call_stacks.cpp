@@ -259,17 +259,11 @@ void CallStacks::take() {
 
 template <class F>
 std::vector<CallStacks::Path> CallStacks::paths_if(F wanted) const {
-  std::vector<Path> out;
+  std::vector<Path> out(nodes_.size());
   for (std::size_t n = 1; n < nodes_.size(); ++n) {
-    Path path;
-    if (wanted(section_, counting_)) path.clocks = nodes_[n].clocks;
+    out[n] = {nodes_[n].parent, nodes_[n].function, wanted(section_, counting_) ? nodes_[n].clocks : 0};
     for (const Taken& t : taken_)
-      if (n < t.clocks.size() && wanted(t.section, t.counted)) path.clocks += t.clocks[n];
-    if (path.clocks == 0) continue;
-    for (std::uint32_t k = static_cast<std::uint32_t>(n); k; k = nodes_[k].parent)
-      path.functions.push_back(nodes_[k].function);
-    std::reverse(path.functions.begin(), path.functions.end());
-    out.push_back(std::move(path));
+      if (n < t.clocks.size() && wanted(t.section, t.counted)) out[n].clocks += t.clocks[n];
   }
   return out;
 }

@@ -64,13 +64,16 @@ class CallStacks {
   /// Also while nothing is counted. The watcher must outlive the subscription.
   Subscription watch(Watcher& watcher) { return watchers_.add(&watcher); }
 
+  /// A call path is that of the caller and one function more, so all paths are a tree: written out, those of a deep
+  /// recursion would need memory by the square of its depth.
   struct Path {
-    std::vector<std::uint32_t> functions;  ///< outermost first
-    std::uint64_t clocks = 0;
+    std::uint32_t caller = 0;    ///< number of its path, which is lower than this one's
+    std::uint32_t function = 0;  ///< address of its first instruction
+    std::uint64_t clocks = 0;    ///< in the function itself
   };
-  /// What was counted, by call path; paths without clocks are left out.
+  /// What was counted. Number 0 is the path without a function; others may have no clocks of their own.
   std::vector<Path> paths() const;
-  /// All clocks of a section, counted or not.
+  /// The same paths with all clocks of a section, counted or not.
   std::vector<Path> paths_of(std::size_t section) const;
   struct Call {
     std::uint32_t from = 0, to = 0;

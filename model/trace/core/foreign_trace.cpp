@@ -161,7 +161,7 @@ ForeignRefusal refuse_foreign(std::string_view first_bytes) {
 
 ForeignTrace::ForeignTrace(std::string name, std::unique_ptr<ByteSource> bytes,
                            const ForeignReading& reading)
-    : name_(std::move(name)), bytes_(std::move(bytes)), reading_(reading), lines_(*bytes_, kBlock) {
+    : name_(std::move(name)), bytes_(std::move(bytes)), reading_(reading), lines_(name_, *bytes_, kBlock) {
   info_.streams.emplace_back();
   info_.masters.push_back(
       {TextTrace::port(0), reading.label, 0, reading.window, TextTrace::kWrites, false});

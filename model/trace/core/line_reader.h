@@ -1,25 +1,32 @@
 // Lines of a text file, read in blocks of whole lines.
 #pragma once
+#include <algorithm>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "model/common/check.h"
 #include "model/trace/core/byte_source.h"
 
 namespace fovea::trace {
 
-/// Offers the file as blocks of whole lines. Memory: one block, or the longest line if that is
-/// longer. A reader may begin at the start of any line.
+/// Bytes that a line may have, or as many as a block has if that is more. No format has lines of a thousand.
+inline constexpr std::size_t kMostLineBytes = 64 << 10;
+
+/// Offers the file as blocks of whole lines. Memory: one block and kMostLineBytes. A reader may begin at the start of
+/// any line.
 class LineReader {
  public:
-  /// `block`: bytes asked of the file at a time. `offset`, `line`: where to begin, and the number
-  /// of the line before; `bytes` must outlive the reader.
-  LineReader(const ByteSource& bytes, std::size_t block, std::uint64_t offset = 0,
+  /// `name`: of the file, for messages. `block`: bytes asked of the file at a time. `offset`,
+  /// `lines_before`: where to begin, and the number of the line before; `bytes` must outlive the reader.
+  LineReader(std::string name, const ByteSource& bytes, std::size_t block, std::uint64_t offset = 0,
              std::uint64_t lines_before = 0)
-      : line(lines_before), bytes_(&bytes), block_(block), next_(offset) {}
+      : line(lines_before), name_(std::move(name)), bytes_(&bytes), block_(block), next_(offset) {}
 
   /// To be called when `at == end`. Puts whole lines between the two, each ended by a line feed,
-  /// also the file's last. @return false at the end of the file  @throws UserError
+  /// also the file's last. @return false at the end of the file  @throws UserError, also for a line
+  /// that is too long
   bool fill() {
     std::size_t kept = filled_ - (end ? static_cast<std::size_t>(end - buffer_.data()) : 0);
     if (kept != 0) std::memmove(buffer_.data(), end, kept);
@@ -44,6 +51,9 @@ class LineReader {
         return true;
       }
       kept = filled_;
+      if (kept > kMostLineBytes)
+        throw UserError("trace '" + name_ + "': the line that begins at byte " + std::to_string(next_ - kept) +
+                        " has no end within " + std::to_string(kept) + " bytes; it is no text of a trace");
     }
   }
   /// Takes the line at `at`, without its line feed.
@@ -64,6 +74,7 @@ class LineReader {
   std::uint64_t line;  ///< number of the line before `at`, counted by the user of this class
 
  private:
+  std::string name_;
   const ByteSource* bytes_;
   std::size_t block_;
   std::uint64_t next_;  // offset of what fill() asks for

@@ -92,7 +92,7 @@ TextTrace::TextTrace(std::string name, std::unique_ptr<ByteSource> bytes,
       bytes_(std::move(bytes)),
       reading_(reading),
       stream_of_(kMaxId + 1, kNoStream),
-      front_(*bytes_, reading.block) {
+      front_(name_, *bytes_, reading.block) {
   try {
     find_masters();
   } catch (const UserError&) {
@@ -120,7 +120,7 @@ void TextTrace::find_start() {
 /// Looks for the declarations of masters in the whole file, as the player has to know all of them
 /// when it begins. They stand in lines whose first character other than a blank is '#'.
 void TextTrace::find_masters() {
-  LineReader lines(*bytes_, reading_.block);
+  LineReader lines(name_, *bytes_, reading_.block);
   while (lines.fill()) {
     const char *counted = lines.at, *at = lines.at;
     const char* mark;
@@ -152,7 +152,7 @@ void TextTrace::read_carefully() {
   streams_.clear();
   std::fill(stream_of_.begin(), stream_of_.end(), kNoStream);
   declaring_ = true;
-  LineReader lines(*bytes_, reading_.block);
+  LineReader lines(name_, *bytes_, reading_.block);
   Line l;
   unsigned stream;
   line_ = 0;
@@ -289,7 +289,7 @@ bool TextTrace::read_chunk(LineReader& lines, Stream* only) {
     s.lines.push_back(l);
     ++added;
     if (!only && s.lines.size() - s.next >= reading_.ahead) [[unlikely]]
-      s.own = std::make_unique<LineReader>(*bytes_, reading_.block, lines.offset(), lines.line);
+      s.own = std::make_unique<LineReader>(name_, *bytes_, reading_.block, lines.offset(), lines.line);
   }
   return true;
 }

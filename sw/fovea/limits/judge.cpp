@@ -12,6 +12,7 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/safe_json.h"
 #include "sw/fovea/limits/figure_names.h"
 
 namespace fovea::limits {
@@ -32,11 +33,10 @@ double remaps_per_frame(const points::PointResult& r) {
   const std::filesystem::path file = r.folder / "run" / "config.json";
   std::error_code error;
   if (r.folder.empty() || !std::filesystem::exists(file, error)) return 1;
-  const auto json = nlohmann::json::parse(app::read_file(file, std::size_t{16} << 20), nullptr, false);
-  const auto parameters = json.is_object() ? json.find("params") : json.end();
-  if (!json.is_object() || parameters == json.end() || !parameters->contains("firmware.repeat")) return 1;
-  const auto& value = (*parameters)["firmware.repeat"]["value"];
-  return value.is_string() ? std::max(1.0, std::strtod(value.get<std::string>().c_str(), nullptr)) : 1;
+  const auto json = app::read_json(file);
+  const auto& key = app::json_member(app::json_member(json, "params"), "firmware.repeat");
+  const std::string repeat = app::json_text(key, "value");
+  return std::max(1.0, std::strtod(repeat.c_str(), nullptr));
 }
 
 /// Remaps follow one another, so one that takes longer than a frame period on average leads to a dropped frame sooner

@@ -6,14 +6,10 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/safe_json.h"
 #include "sw/fovea/sha256.h"
 
 namespace fovea::points {
-namespace {
-
-constexpr std::size_t kMaxStatsBytes = 64u << 20;
-
-}  // namespace
 
 std::string key_of(const Point& point) {
   std::string text = "fovea point 1\n" + point.command + "\n";
@@ -28,7 +24,7 @@ void read_stats(PointResult& result) {
   const std::filesystem::path file = result.folder / "run" / "stats.json";
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return;
-  const auto json = nlohmann::json::parse(app::read_file(file, kMaxStatsBytes), nullptr, false);
+  const auto json = app::read_json(file);
   if (!json.is_object())
     throw UserError(fmt::format("'{}' is not a stats.json of Fovea; remove its folder and try again",
                                 app::one_line(file.string())));

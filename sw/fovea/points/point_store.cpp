@@ -14,6 +14,7 @@
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/output_file.h"
 #include "sw/fovea/output_folder.h"
+#include "sw/fovea/safe_json.h"
 
 namespace fovea::points {
 namespace {
@@ -104,8 +105,7 @@ std::optional<PointResult> PointStore::find(std::string_view key) const {
   PointResult result;
   result.folder = folder(key);
   if (!fs::exists(result.folder)) return std::nullopt;
-  const json entry =
-      json::parse(app::read_file(result.folder / "point.json", kMaxBytes), nullptr, false);
+  const json entry = app::read_json(result.folder / "point.json");
   if (!entry.is_object() || !entry.contains("key") || entry["key"] != key ||
       !entry.contains("status") || !entry["status"].is_number_integer() ||
       (entry.contains("message") && !entry["message"].is_string()) ||

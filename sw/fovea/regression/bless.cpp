@@ -79,35 +79,25 @@ struct DiffLine {
   std::string text;
 };
 
-/// All lines of both texts, by the longest common subsequence after equal ends are taken off; baselines are small.
+/// All lines of both texts. Blessing replaces values where they stand and adds lines at the end, so line i of one is
+/// line i of the other; what a comparison of any two texts needs, memory by the square of their lines, is not worth it.
 std::vector<DiffLine> aligned_lines(const std::vector<std::string>& a, const std::vector<std::string>& b) {
-  std::size_t head = 0, tail = 0;
-  while (head < a.size() && head < b.size() && a[head] == b[head]) ++head;
-  while (tail + head < a.size() && tail + head < b.size() &&
-         a[a.size() - 1 - tail] == b[b.size() - 1 - tail])
-    ++tail;
-  const std::size_t rows = a.size() - head - tail, columns = b.size() - head - tail;
-  std::vector<std::size_t> common((rows + 1) * (columns + 1));
-  const auto at = [&](std::size_t i, std::size_t j) -> std::size_t& {
-    return common[i * (columns + 1) + j];
+  std::vector<DiffLine> lines, added;  // the second: of the differing lines in a row, those of b
+  const auto end_of_row = [&] {
+    lines.insert(lines.end(), added.begin(), added.end());
+    added.clear();
   };
-  for (std::size_t i = rows; i-- > 0;)
-    for (std::size_t j = columns; j-- > 0;)
-      at(i, j) = a[head + i] == b[head + j] ? at(i + 1, j + 1) + 1
-                                            : std::max(at(i + 1, j), at(i, j + 1));
-  std::vector<DiffLine> lines;
-  for (std::size_t i = 0; i < head; ++i) lines.push_back({' ', a[i]});
-  for (std::size_t i = 0, j = 0; i < rows || j < columns;) {
-    if (i < rows && j < columns && a[head + i] == b[head + j]) {
-      lines.push_back({' ', a[head + i]});
-      ++i, ++j;
-    } else if (i < rows && (j == columns || at(i + 1, j) >= at(i, j + 1))) {
-      lines.push_back({'-', a[head + i++]});
-    } else {
-      lines.push_back({'+', b[head + j++]});
+  for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+    const bool in_a = i < a.size(), in_b = i < b.size();
+    if (in_a && in_b && a[i] == b[i]) {
+      end_of_row();
+      lines.push_back({' ', a[i]});
+      continue;
     }
+    if (in_a) lines.push_back({'-', a[i]});
+    if (in_b) added.push_back({'+', b[i]});
   }
-  for (std::size_t i = a.size() - tail; i < a.size(); ++i) lines.push_back({' ', a[i]});
+  end_of_row();
   return lines;
 }
 

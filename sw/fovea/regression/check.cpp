@@ -90,7 +90,7 @@ std::vector<const Finding*> findings_by_size(const CheckResult& result) {
   return out;
 }
 
-Finding judge(const Expectation& e, const RunFigures& run) {
+Finding judge(const Expectation& e, const RunFigures& run, bool hint) {
   Finding out{&e, run.metric(e.name), Verdict::kPass, ""};
   const auto fail = [&out](std::string words) {
     out.verdict = Verdict::kFail;
@@ -98,7 +98,7 @@ Finding judge(const Expectation& e, const RunFigures& run) {
     return out;
   };
   if (!out.got) {
-    const std::string near = nearest_metric(run, e.name);
+    const std::string near = hint ? nearest_metric(run, e.name) : "";
     return fail("the run has no such figure" +
                 (near.empty() ? std::string() : "; did you mean " + near + "?"));
   }
@@ -143,7 +143,13 @@ CheckResult check_run(const RunFigures& run, const Baseline& baseline, bool acro
         app::one_line(baseline.file.string()), baseline.version, baseline.commit));
   check_circumstances(run, baseline);
   CheckResult out;
-  for (const auto& e : baseline.metrics) out.findings.push_back(judge(e, run));
+  // Each hint compares a name with all others. Whoever has more than these unknown has not mistyped them.
+  constexpr std::size_t kMostHints = 20;
+  std::size_t unknown = 0;
+  for (const auto& e : baseline.metrics) {
+    unknown += run.metric(e.name) == nullptr;
+    out.findings.push_back(judge(e, run, unknown <= kMostHints));
+  }
   if (baseline.reference.empty()) return out;
   const RunFigures reference = read_reference(baseline);
   out.settings = differences_of_settings(reference, run);
@@ -163,7 +169,8 @@ std::string check_text(const CheckResult& result, const RunFigures& run, const B
                        bool all) {
   const std::size_t failures = result.failures();
   std::string out =
-      fmt::format("{}: {} against {}: ", failures ? "FAILED" : "passed", run.subject.label(), baseline.file.string());
+      fmt::format("{}: {} against {}: ", failures ? "FAILED" : "passed", run.subject.label(),
+                  app::one_line(baseline.file.string()));
   out += failures ? fmt::format("{} of {} figures\n", failures, result.findings.size())
                   : fmt::format("{} figures\n", result.findings.size());
   std::size_t width = 0, better = 0;
@@ -182,7 +189,7 @@ std::string check_text(const CheckResult& result, const RunFigures& run, const B
   }
   if (better && !failures && !baseline.text.empty())
     out += fmt::format("  'fovea bless {} --against {} --why TEXT' keeps what became better\n",
-                       run.folder.string(), baseline.file.string());
+                       app::one_line(run.folder.string()), app::one_line(baseline.file.string()));
   if (!result.settings.empty() && (failures || run.version != baseline.version ||
                                    commit_text(run) != baseline.commit)) {
     out += "what was different from the reference:\n";

@@ -35,7 +35,7 @@ struct CheckResult {
 /// Compares one figure. A kind `exact` with `worse: both` fails on any deviation beyond the
 /// tolerance; otherwise only a deviation in the direction that is worse fails, the other one is
 /// "better" (of a budget: passes).
-Finding judge(const Expectation& expected, const RunFigures& run);
+Finding judge(const Expectation& expected, const RunFigures& run, bool hint = true);
 
 /// Refuses a run that the baseline is not for. @throws UserError: another experiment or other
 /// settings

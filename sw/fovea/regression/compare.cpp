@@ -298,7 +298,8 @@ std::string figures_text(const Comparison& c, bool all) {
 
 std::string comparison_text(const Comparison& c, const Tolerance& tolerance, bool all) {
   std::string out =
-      fmt::format("A  {}: {}, fovea {}\nB  {}: {}, fovea {}\n", c.before->folder.string(), c.before->subject.text(),
+      fmt::format("A  {}: {}, fovea {}\nB  {}: {}, fovea {}\n", app::one_line(c.before->folder.string()),
+                  c.before->subject.text(),
                   c.before->simulator(), c.after->folder.string(), c.after->subject.text(), c.after->simulator());
   out += settings_text(c.settings, all);
   const std::string within =

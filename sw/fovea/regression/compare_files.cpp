@@ -3,6 +3,7 @@
 
 #include "sw/fovea/regression/compare.h"
 #include "sw/fovea/regression/table_file.h"
+#include "sw/fovea/safe_json.h"
 
 namespace fovea::regression {
 namespace {
@@ -23,7 +24,7 @@ Json optional_json(std::optional<double> value) { return value ? Json(*value) : 
 
 Json metric_json(const Metric* m) {
   if (!m || !m->value) return nullptr;
-  return m->whole ? Json(static_cast<std::uint64_t>(*m->value)) : Json(*m->value);
+  return app::json_number(*m->value, m->whole);
 }
 
 Json share_json(const Share& s) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "sw/fovea/checked_file.h"
 #include "sw/fovea/regression/check.h"
 #include "sw/fovea/regression/compare.h"
 #include "sw/fovea/regression/xml.h"
@@ -8,14 +9,13 @@ namespace fovea::regression {
 
 std::string xml_text(std::string_view text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : app::printable(text)) {
     switch (c) {
       case '&': out += "&amp;"; break;
       case '<': out += "&lt;"; break;
       case '>': out += "&gt;"; break;
       case '"': out += "&quot;"; break;
-      case '\n': case '\t': out += c; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+      default: out += c;
     }
   }
   return out;

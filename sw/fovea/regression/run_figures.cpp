@@ -9,6 +9,7 @@
 #include "model/common/check.h"
 #include "model/common/nearest.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/safe_json.h"
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/run_files.h"
 
@@ -18,51 +19,43 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;
-
 json read_object(const fs::path& file) {
-  const json value = json::parse(app::read_file(file, kMaxFileBytes), nullptr, false);
+  const json value = app::read_json(file);
   if (!value.is_object())
     throw UserError(fmt::format("'{}' is not a JSON object; allowed: a file that 'fovea run' wrote",
                                 app::one_line(file.string())));
   return value;
 }
 
-std::string text_of(const json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
 std::vector<std::string> texts_of(const json& object, const char* name) {
   std::vector<std::string> out;
-  for (const auto& word : object.value(name, json::array()))
+  for (const auto& word : app::json_member(object, name))
     if (word.is_string()) out.push_back(word.get<std::string>());
   return out;
 }
 
 /// Results of `exec` and `replay` name their command; those of versions before tell by the input's hash.
 Subject subject_of(const json& config, const std::map<std::string, std::string>& hashes) {
-  const std::string command = text_of(config, "command");
+  const std::string command = app::json_text(config, "command");
   if (command == command_of(ResultKind::kExec) || hashes.contains("program"))
-    return {ResultKind::kExec, text_of(config, "input"), texts_of(config, "arguments"), texts_of(config, "options")};
+    return {ResultKind::kExec, app::json_text(config, "input"), texts_of(config, "arguments"),
+            texts_of(config, "options")};
   if (command == command_of(ResultKind::kReplay) || hashes.contains("trace"))
-    return {ResultKind::kReplay, text_of(config, "input"), {}, texts_of(config, "options")};
-  return {ResultKind::kRun, text_of(config, "experiment")};
+    return {ResultKind::kReplay, app::json_text(config, "input"), {}, texts_of(config, "options")};
+  return {ResultKind::kRun, app::json_text(config, "experiment")};
 }
 
 void read_config(const json& config, RunFigures& run) {
-  run.version = text_of(config, "version");
-  run.commit = text_of(config, "commit");
-  run.modified = config.value("modified", json(false)) == true;
-  const json hashes = config.value("sha256", json::object());
-  for (const auto& [name, hash] : hashes.items())
+  run.version = app::json_text(config, "version");
+  run.commit = app::json_text(config, "commit");
+  run.modified = app::json_member(config, "modified") == true;
+  for (const auto& [name, hash] : app::json_member(config, "sha256").items())
     run.hashes[name] = hash.is_string() ? hash.get<std::string>() : "";
   run.subject = subject_of(config, run.hashes);
-  const json params = config.value("params", json::object());
-  for (const auto& [key, p] : params.items()) {
+  for (const auto& [key, p] : app::json_member(config, "params").items()) {
     if (!p.is_object()) continue;
     Parameter& parameter = run.parameters[key];
-    parameter = {text_of(p, "value"), text_of(p, "default"), text_of(p, "tag")};
+    parameter = {app::json_text(p, "value"), app::json_text(p, "default"), app::json_text(p, "tag")};
     parameter.path = run.hashes.contains(key);
   }
 }
@@ -72,7 +65,7 @@ void read_stats(const json& stats, RunFigures& run) {
     if (!row.is_object() || !row.contains("value") || !row.contains("unit")) continue;
     const json& value = row["value"];
     Metric& m = run.metrics[name];
-    m.unit = text_of(row, "unit");
+    m.unit = app::json_text(row, "unit");
     m.whole = value.is_number_integer();
     if (value.is_number()) m.value = value.get<double>();
   }
@@ -124,7 +117,7 @@ RunFigures read_run(const fs::path& folder) {
   RunFigures run;
   run.folder = folder;
   const json stats = read_object(folder / "stats.json");
-  if (stats.value("complete", json(false)) != true)
+  if (app::json_member(stats, "complete") != true)
     throw UserError(fmt::format("'{}' holds partial results: its run was stopped or its guest "
                                 "failed; allowed: complete results",
                                 name));
@@ -132,13 +125,12 @@ RunFigures read_run(const fs::path& folder) {
   read_stats(stats, run);
   if (fs::exists(folder / "host.json", error)) {
     const json host = read_object(folder / "host.json");
-    const json words = host.value("command", json::array());
+    const json& words = app::json_member(host, "command");
     if (!words.empty()) run.command.push_back("fovea");  // the file has the words behind it
     for (const auto& word : words)
       if (word.is_string()) run.command.push_back(word);
-    const json counted = host.value("host_instructions", json::object());
-    if (counted.is_object() && counted.contains("value") && counted["value"].is_number())
-      run.host_instructions = counted["value"].get<double>();
+    const json& counted = app::json_member(app::json_member(host, "host_instructions"), "value");
+    if (counted.is_number()) run.host_instructions = counted.get<double>();
   }
   return run;
 }

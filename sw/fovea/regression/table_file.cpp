@@ -7,68 +7,33 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/report/csv.h"
 
 namespace fovea::regression {
-namespace {
-
-constexpr std::size_t kMaxTableBytes = std::size_t{256} << 20;
-
-/// Splits the text into rows of fields. Line feeds inside quotes belong to the field.
-std::vector<std::vector<std::string>> rows_of(const std::string& text) {
-  std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> row;
-  std::string field;
-  bool quoted = false, begun = false;
-  const auto end_field = [&] {
-    row.push_back(std::move(field));
-    field.clear();
-  };
-  const auto end_row = [&] {
-    if (begun) {
-      end_field();
-      rows.push_back(std::move(row));
-    }
-    row.clear();
-    begun = false;
-  };
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c != '"') field += c;
-      else if (i + 1 < text.size() && text[i + 1] == '"') field += text[++i];
-      else quoted = false;
-      continue;
-    }
-    if (c == '\n') {
-      end_row();
-      continue;
-    }
-    begun = true;
-    if (c == '"') quoted = true;
-    else if (c == ',') end_field();
-    else if (c != '\r') field += c;
-  }
-  end_row();
-  return rows;
-}
-
-}  // namespace
-
 TableFile::TableFile(const std::filesystem::path& file, const std::vector<std::string>& columns)
     : file_(file) {
-  rows_ = rows_of(app::read_file(file, kMaxTableBytes));
   const std::string name = app::one_line(file.string());
-  if (rows_.empty()) throw UserError(fmt::format("'{}' is empty; allowed: a table with a header", name));
-  header_ = std::move(rows_.front());
-  rows_.erase(rows_.begin());
+  report::each_csv_record(
+      file, app::read_file(file, report::kMaxTableBytes),
+      [&](const report::CsvPlace&, std::span<const std::string> fields) {
+        std::vector<std::string> row(fields.begin(), fields.end());
+        if (row.back().ends_with('\r')) row.back().pop_back();  // as Git on Windows has it
+        if (row.size() == 1 && row.front().empty()) return;
+        if (header_.empty()) {
+          header_ = std::move(row);
+          return;
+        }
+        // Before the next row is read: a file of commas would need much memory.
+        if (row.size() != header_.size())
+          throw UserError(fmt::format("'{}', row {}: {} fields; allowed: {}, as in the header", name, rows_.size() + 2,
+                                      row.size(), header_.size()));
+        rows_.push_back(std::move(row));
+      });
+  if (header_.empty()) throw UserError(fmt::format("'{}' is empty; allowed: a table with a header", name));
   for (const auto& column : columns)
     if (!has(column))
       throw UserError(fmt::format("'{}' has no column '{}'; allowed: a table with the columns {}",
                                   name, column, fmt::join(columns, ",")));
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-    if (rows_[i].size() != header_.size())
-      throw UserError(fmt::format("'{}', row {}: {} fields; allowed: {}, as in the header", name,
-                                  i + 2, rows_[i].size(), header_.size()));
 }
 
 bool TableFile::has(std::string_view column) const {

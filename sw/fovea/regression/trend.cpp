@@ -8,6 +8,7 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/safe_json.h"
 
 namespace fovea::regression {
 namespace {
@@ -109,7 +110,7 @@ void TrendFile::add(const TrendLine& line, bool replace) {
   json figures = json::object(), units = json::object();
   for (const auto& [name, m] : line.figures) {
     if (!m.value) continue;
-    figures[name] = m.whole ? json(static_cast<std::uint64_t>(*m.value)) : json(*m.value);
+    figures[name] = app::json_number(*m.value, m.whole);
     units[name] = m.unit;
   }
   execute("BEGIN IMMEDIATE");
@@ -171,8 +172,8 @@ std::vector<TrendLine> TrendFile::lines(const std::string& experiment) const {
   std::vector<TrendLine> out;
   while (s.step()) {
     TrendLine line{s.text(0), s.text(1), s.text(2), s.number(3), {}, s.text(6), s.text(7)};
-    const json figures = json::parse(s.text(4), nullptr, false);
-    const json units = json::parse(s.text(5), nullptr, false);
+    const json figures = app::parse_json(s.text(4));
+    const json units = app::parse_json(s.text(5));
     if (!figures.is_object() || !units.is_object())
       fail("the line of commit " + line.commit + " cannot be read");
     for (const auto& [name, value] : figures.items()) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/cpu/core/stalls.h"
+#include "sw/fovea/profile_report.h"
 
 namespace fovea::report {
 namespace {
@@ -191,10 +192,19 @@ Json stack_tree(const std::vector<std::pair<std::string, std::uint64_t>>& stacks
   for (const auto& [stack, clocks] : stacks) {
     Node* node = &root;
     node->clocks += clocks;
-    for (std::size_t from = 0; from <= stack.size();) {
-      const std::size_t end = std::min(stack.find(';', from), stack.size());
-      node = &node->children[stack.substr(from, end - from)];
+    const auto go = [&](std::string_view name) {
+      node = &node->children[std::string(name)];
       node->clocks += clocks;
+    };
+    std::size_t depth = 0;
+    for (std::size_t from = 0; from <= stack.size(); ++depth) {
+      const std::size_t end = std::min(stack.find(';', from), stack.size());
+      if (depth == app::kShownDepth && end < stack.size()) {  // as the files of a profile have it
+        go("...");
+        go(std::string_view(stack).substr(stack.rfind(';') + 1));
+        break;
+      }
+      go(std::string_view(stack).substr(from, end - from));
       from = end + 1;
     }
   }
@@ -203,8 +213,10 @@ Json stack_tree(const std::vector<std::pair<std::string, std::uint64_t>>& stacks
 
 Json chart_data(const Results& run, const std::string& label) {
   Json out{{"label", label}, {"name", run.name}};
+  // Not `stats[name] = ...`, which looks for the name among all that are there; each occurs once.
   Json stats = Json::object();
-  for (const auto& s : run.stats) stats[s.name] = {number(s.value), s.unit};
+  for (const auto& s : run.stats)
+    stats.get_ref<Json::object_t&>().emplace_back(s.name, Json{number(s.value), s.unit});
   out["stats"] = std::move(stats);
   for (const cpu::WakeInfo& info : cpu::kWakeTable) out["events"][info.name] = info.who;
   if (run.frames) {

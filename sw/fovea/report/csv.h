@@ -17,8 +17,15 @@ struct CsvPlace {
   std::size_t line = 0;
 };
 
+/// Fields that a record may have; a timeline has four for each master.
+inline constexpr std::size_t kMaxCsvFields = 512;
+/// Bytes of a table, which does not grow with the length of a run, and of rows that do. 10,000 frames have a
+/// timeline.csv of 80 MB.
+inline constexpr std::size_t kMaxTableBytes = 16u << 20, kMaxRowsBytes = 128u << 20;
+
 /// The fields of a CSV text (RFC 4180: quoted fields, "" for a quote), with the line in which each
-/// record begins. The function gets the header first.
+/// record begins. The function gets the header first. @throws UserError with file and line: a quote without its end,
+/// more fields than kMaxCsvFields
 void each_csv_record(const std::filesystem::path& file, std::string_view text,
                      const std::function<void(const CsvPlace&, std::span<const std::string>)>& row);
 
@@ -26,7 +33,8 @@ void each_csv_record(const std::filesystem::path& file, std::string_view text,
 /// @throws UserError with file and line: another header, a row with another number of fields, a
 /// quote without its end
 void each_csv_row(const std::filesystem::path& file, std::span<const std::string_view> columns,
-                  const std::function<void(const CsvPlace&, std::span<const std::string>)>& row);
+                  const std::function<void(const CsvPlace&, std::span<const std::string>)>& row,
+                  std::size_t max_bytes = kMaxTableBytes);
 
 /// Numbers as the files have them. @throws UserError with file and line
 std::uint64_t whole(const CsvPlace& place, const std::string& field);

@@ -59,7 +59,7 @@ int command_report(const ReportOptions& options, const CliContext& context) {
   OutputFile file(place, "report --out", "a report of Fovea", report::is_report_page);
   file.write(report::report_page(runs));
   file.commit();
-  context.out << fmt::format("report in {}\n", place.string()) << std::flush;
+  context.out << fmt::format("report in {}\n", one_line(place.string(), std::string::npos)) << std::flush;
   return kExitDone;
 }
 

@@ -10,6 +10,7 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
+#include "sw/fovea/safe_json.h"
 #include "sw/fovea/provenance.h"
 #include "sw/fovea/report/csv.h"
 #include "sw/fovea/run_files.h"
@@ -18,10 +19,10 @@ namespace fovea::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxJsonBytes = 64u << 20;
 constexpr std::size_t kMaxStacksBytes = 64u << 20;
+/// Figures and parameters that a run may have; the page looks for names one by one. A run on the board has about 700.
+constexpr std::size_t kMaxNames = 5000;
 
 std::string quoted(const fs::path& path) { return "'" + app::one_line(path.string()) + "'"; }
 
@@ -30,31 +31,34 @@ bool is_there(const fs::path& file) {
   return fs::is_regular_file(file, error);
 }
 
-Json read_object(const fs::path& file) {
-  Json value = Json::parse(app::read_file(file, kMaxJsonBytes), nullptr, false);
+nlohmann::json read_object(const fs::path& file) {
+  nlohmann::json value = app::read_json(file);
   if (!value.is_object()) throw UserError(quoted(file) + ": not a file of JSON; it is damaged");
+  if (const std::size_t names = std::max(value.size(), app::json_member(value, "params").size()); names > kMaxNames)
+    throw UserError(
+        fmt::format("{}: it has {} figures or parameters; allowed: up to {}", quoted(file), names, kMaxNames));
   return value;
 }
 
 /// A member as text; empty if it is missing or null.
-std::string text(const Json& object, const char* name) {
+std::string text(const nlohmann::json& object, const char* name) {
   const auto found = object.find(name);
   if (found == object.end() || found->is_null()) return "";
   return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
-bool flag(const Json& object, const char* name, bool otherwise) {
+bool flag(const nlohmann::json& object, const char* name, bool otherwise) {
   const auto found = object.find(name);
   return found != object.end() && found->is_boolean() ? found->get<bool>() : otherwise;
 }
 
 /// Members of the form {"value": number, "unit": text, "description": text}; null ones are left
 /// out.
-std::vector<app::StatRow> read_figures(const Json& object) {
+std::vector<app::StatRow> read_figures(const nlohmann::json& object) {
   std::vector<app::StatRow> rows;
   for (const auto& [name, member] : object.items()) {
     if (!member.is_object() || !member.contains("value") || !member["value"].is_number()) continue;
-    const Json& v = member["value"];
+    const nlohmann::json& v = member["value"];
     rows.push_back({name,
                     v.is_number_unsigned() ? StatBase::Value(v.get<std::uint64_t>())
                                            : StatBase::Value(v.get<double>()),
@@ -64,7 +68,7 @@ std::vector<app::StatRow> read_figures(const Json& object) {
 }
 
 void read_config(Results& out, const fs::path& file) {
-  const Json config = read_object(file);
+  const nlohmann::json config = read_object(file);
   out.version = text(config, "version");
   out.commit = text(config, "commit");
   out.modified = flag(config, "modified", false);
@@ -90,25 +94,25 @@ void read_config(Results& out, const fs::path& file) {
 }
 
 void read_stats(Results& out, const fs::path& file) {
-  const Json stats = read_object(file);
+  const nlohmann::json stats = read_object(file);
   out.complete = flag(stats, "complete", true);
   out.ended_by = text(stats, "ended_by");
   out.kernel = text(stats, "kernel");
   out.stats = read_figures(stats);
   if (const auto list = stats.find("warnings"); list != stats.end() && list->is_array())
-    for (const Json& w : *list) {
+    for (const nlohmann::json& w : *list) {
       if (!w.is_object()) throw UserError(quoted(file) + ": a warning is not an object; it is damaged");
       out.warnings.push_back(
           {text(w, "kind"), text(w, "what"),
-           w.value("count", Json(0)).is_number_unsigned() ? w["count"].get<std::uint64_t>() : 0});
+           w.value("count", nlohmann::json(0)).is_number_unsigned() ? w["count"].get<std::uint64_t>() : 0});
     }
 }
 
 void read_host(Results& out, const fs::path& file) {
-  const Json host = read_object(file);
+  const nlohmann::json host = read_object(file);
   out.host = read_figures(host);
   if (const auto list = host.find("command"); list != host.end() && list->is_array())
-    for (const Json& word : *list)
+    for (const nlohmann::json& word : *list)
       out.arguments.push_back(word.is_string() ? word.get<std::string>() : "");
   out.command = out.arguments.empty() ? "" : out.arguments.front();
 }
@@ -135,7 +139,7 @@ std::vector<app::FrameRow> read_frames(const fs::path& file) {
     row.dropped = whole(at, f[9]);
     row.repeated = whole(at, f[10]) != 0;
     rows.push_back(row);
-  });
+  }, kMaxRowsBytes);
   return rows;
 }
 
@@ -162,7 +166,7 @@ Timeline read_timeline(const fs::path& file) {
       row.write_bytes.push_back(whole(at, f[3 + 2 * m]));
     }
     out.rows.push_back(std::move(row));
-  });
+  }, kMaxRowsBytes);
   return out;
 }
 
@@ -261,7 +265,7 @@ void check_folder(const fs::path& folder) {
   const fs::path config = folder / "config.json";
   std::string format;
   if (is_there(config)) {
-    const Json value = Json::parse(app::read_file(config, kMaxJsonBytes), nullptr, false);
+    const nlohmann::json value = app::read_json(config);
     if (value.is_object()) format = text(value, "format");
   }
   if (format.empty())
