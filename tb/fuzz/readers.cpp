@@ -84,7 +84,7 @@ Result table(std::string_view bytes) {
   const regression::TableFile t(InputFile(bytes).name(), {"function", "clocks"});
   std::uint64_t sum = 0;
   for (std::size_t row = 0; row < t.rows(); ++row) sum += t.text(row, "function").size() + t.count(row, "clocks");
-  planted(t.rows() > 3);
+  planted(t.rows() > 3 && sum > 0);
   return Result::kRead;
 }
 
