@@ -106,7 +106,7 @@ Result text_trace(std::string_view bytes) {
 Result binary_trace(std::string_view bytes) {
   trace::TraceFile t("t", std::string(bytes));
   take_all(t, t.info().streams.size());
-  planted(t.records() != 3);
+  planted(t.records() != 4);
   return Result::kRead;
 }
 
