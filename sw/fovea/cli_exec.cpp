@@ -67,7 +67,6 @@ ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOpt
   out.exit_code = result.exit_code.value_or(0);
   out.guest_failure = std::move(result.guest_failure);
   out.difference = std::move(result.difference);
-  out.lost = std::move(result.lost);
   out.stats = std::move(result.stats);
   out.host = std::move(result.host);
   out.stalls = std::move(result.stalls);

@@ -53,7 +53,6 @@ struct ExecResult {
   LostOutputs lost = {};  ///< of what was asked for beside the results
   std::string hazards;    ///< with --hazards: a sentence about those found; empty: none
   std::string ended;      ///< with --board: a sentence about what ended the run; may be empty
-  std::vector<std::string> lost = {};  ///< why outputs beside the results could not be written, a sentence each
 };
 
 /// A machine that runs one program.

@@ -106,7 +106,6 @@ struct RunResult {
   ProfileResult profile;  ///< with --profile
   LostOutputs lost = {};  ///< of what was asked for beside the results
   std::string hazards;    ///< a sentence about the coherency hazards that were found; empty: none
-  std::vector<std::string> lost = {};  ///< why outputs beside the results could not be written, a sentence each
 };
 
 /// Two models of a block that ran side by side differ. Exit status 1, as of a check that failed.
