@@ -87,12 +87,14 @@ class DataCache {
   }
   /// The same for internal RAM; `bytes` is the host address of the range that contains `va`.
   void hint_ram_reads(std::uint32_t va, std::uint32_t mva, std::uint8_t* bytes, std::uint64_t& counter) {
+    Hint& hint = read_hints[mva / kReadSpan % kHints];
+    if (hint.key != (va & ~(kReadSpan - 1))) note_ram_hint(hint);
     hint_reads(va, mva, bytes, counter);
-    note_ram_hint(read_hints[mva / kReadSpan % kHints]);
   }
   void hint_ram_writes(std::uint32_t va, std::uint32_t mva, std::uint8_t* bytes, std::uint64_t& counter) {
+    Hint& hint = write_hints[mva / kWriteSpan % kHints];
+    if (hint.key != (va & ~(kWriteSpan - 1))) note_ram_hint(hint);
     hint_writes(va, mva, bytes, counter);
-    note_ram_hint(write_hints[mva / kWriteSpan % kHints]);
   }
   void hint_absent(std::uint32_t va, std::uint32_t pa) {
     absent = {va & ~(kReadSpan - 1), pa & ~(kReadSpan - 1)};
@@ -135,6 +137,7 @@ class DataCache {
   void write_back(unsigned line, bool before_fill, Cause cause);
   void announce_load(unsigned line, unsigned offset, unsigned bytes);
   void note_ram_hint(Hint& hint) {
+    if (ram_hints_used_ > kRamHints) return;
     if (ram_hints_used_ < kRamHints) ram_hints_[ram_hints_used_] = &hint;
     ++ram_hints_used_;
   }

@@ -14,8 +14,8 @@ namespace fovea::cpu {
 /// The physical address selects internal RAM (model/decisions/0008-internal-ram.md). Data accesses
 /// reach it through both windows, instruction fetches only through that of the instruction TCM.
 ///
-/// A burst of the DMA arrives and moves its data in kernel time, and the core runs ahead strictly
-/// before that. Between these two, each access of the core is checked in access().
+/// The core runs ahead strictly before a burst of the DMA arrives, and before its data are moved.
+/// Between these two, each access of the core is checked in access().
 class InternalRam {
  public:
   static constexpr std::uint32_t kDtcmBase = INTERNAL_RAM_DATA_BASE;
