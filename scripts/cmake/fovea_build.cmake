@@ -18,11 +18,7 @@ endif()
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # Without the first setting, ccache keeps nothing that is compiled with precompiled headers. With the others, a second
-  # checkout in another folder finds what the first one has compiled; debug information then names the first one's
-  # sources.
-  set(launcher ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
-               CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
+  set(launcher ${CMAKE_SOURCE_DIR}/scripts/cmake/launch.sh ${CCACHE} ${CMAKE_SOURCE_DIR})
   set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
 endif()
