@@ -2,16 +2,21 @@
 """Random guest programs on the whole board: none may show a defect of the simulator, and strict synchronisation, the
 slow reference, must leave the same bytes as the default.
 
-Usage: random_guests.py FOVEA GUEST.elf REGISTERS.h OUT FIRST COUNT [--jobs N]
+Usage: random_guests.py FOVEA GUEST.elf REGISTERS.h OUT FIRST COUNT [--jobs N] [--known FILE [--write]]
 
 Program number n is drawn from the seed n. It writes and reads registers of all blocks in all widths, at random and in
 sequences that start timers, transfers, caches and, with some writes left out or changed, camera and display as the
 firmware does; it waits for registers and interrupts, and jumps. It may end as it likes, with status 0 or 3 (a fault of
 the guest), but within the time limit of a run. Prints how the programs ended, and each complaint with the number that
 makes it again; the folders of those are kept.
+
+FILE holds, for each program, a digest of what it has read and written in registers and sent on UART0, and one of that
+with all times and figures. A change of the model that is to alter neither must keep both; --write puts down those of
+now, which a new register or another firmware changes as well, since they change the programs.
 """
 import argparse
 import concurrent.futures
+import hashlib
 import pathlib
 import random
 import re
@@ -241,12 +246,26 @@ def complaint(fovea, folder, elf, until):
     if ends["default"] != ends["strict"]:
         return f"default says {ends['default']}, strict {ends['strict']}", None
     for name in FILES:
-        contents = [(folder / mode / name).read_bytes() if (folder / mode / name).exists() else None for mode in ends]
-        if contents[0] != contents[1]:
+        if (folder / "default" / name).read_bytes() != (folder / "strict" / name).read_bytes():
             return f"{name} differs between default and strict", None
-    if ends["default"][0] == 0 and not (folder / "default/stats.json").exists():
-        return "no stats.json", None
     return None, ends["default"]
+
+
+def digests(folder):
+    """Of the values that a program has seen, and of these with all times and figures."""
+    contents = {name: (folder / "default" / name).read_bytes() for name in FILES}
+    untimed = re.sub(rb"^[0-9.]+ ns ", b"", contents["registers.log"], flags=re.M)
+    values = hashlib.sha256(untimed + contents["uart.log"])
+    everything = hashlib.sha256(b"".join(contents[name] for name in FILES))
+    return values.hexdigest()[:16], everything.hexdigest()[:16]
+
+
+def unlike(known, seed, seen):
+    if known is None or known.get(seed) == seen:
+        return None
+    if seed not in known:
+        return "is not known"
+    return "other times or figures than known" if known[seed][0] == seen[0] else "other values than known"
 
 
 def main():
@@ -258,7 +277,13 @@ def main():
     args.add_argument("first", type=int)
     args.add_argument("count", type=int)
     args.add_argument("--jobs", type=int, default=1)
+    args.add_argument("--known", type=pathlib.Path)
+    args.add_argument("--write", action="store_true")
     args = args.parse_args()
+    known = None
+    if args.known and not args.write:
+        rows = [line.split() for line in args.known.read_text().splitlines()]
+        known = {int(seed): tuple(seen) for seed, *seen in rows}
     frame, registers = args.guest.read_bytes(), Registers(args.registers.read_text())
 
     def new_folder(name):
@@ -278,22 +303,27 @@ def main():
         contents, until = program(frame, registers, seed)
         elf.write_bytes(contents)
         wrong, end = complaint(args.fovea, folder, elf, until)
-        accesses = 0
+        seen = accesses = None
         if wrong is None:
-            log = folder / "default/registers.log"
-            accesses = sum(1 for _ in log.open(errors="replace")) if log.exists() else 0
+            accesses = (folder / "default/registers.log").read_text().count("\n")
+            seen = digests(folder)
+            wrong = unlike(known, seed, seen)
+        if wrong is None:
             shutil.rmtree(folder)
-        return seed, wrong, end, accesses
+        return seed, wrong, end, accesses, seen
 
-    failures, ended, accesses = 0, {}, 0
+    failures, ended, accesses, all_seen = 0, {}, 0, []
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
-        for seed, wrong, end, logged in pool.map(one, range(args.first, args.first + args.count)):
-            accesses += logged
+        for seed, wrong, end, logged, seen in pool.map(one, range(args.first, args.first + args.count)):
             if wrong is not None:
                 failures += 1
                 print(f"program {seed}: {wrong}", flush=True)
-            else:
-                ended[end[0]] = ended.get(end[0], 0) + 1
+                continue
+            accesses += logged
+            ended[end[0]] = ended.get(end[0], 0) + 1
+            all_seen.append(f"{seed} {seen[0]} {seen[1]}\n")
+    if args.write:
+        args.known.write_text("".join(all_seen))
     ways = ", ".join(f"{n} with status {status}" for status, n in sorted(ended.items()))
     print(f"{args.count} programs, {accesses} logged accesses to registers: ended {ways}; {failures} complaints")
     return 1 if failures else 0

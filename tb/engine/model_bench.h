@@ -68,6 +68,7 @@ class ModelBench : private EngineBackend::Host {
   EngineRegs regs;
   Memory memory;
   std::vector<Asked> asked;  ///< requests since the last run()
+  Picoseconds now() const { return now_; }
   unsigned calls = 0;        ///< of backend.run()
   std::vector<bool> interrupts;  ///< levels of the line, as it changed
 

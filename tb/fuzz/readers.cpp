@@ -24,6 +24,7 @@
 #include "sw/fovea/replay_params.h"
 #include "sw/fovea/safe_json.h"
 #include "sw/fovea/source_lines.h"
+#include "tb/fuzz/guests.h"
 #include "tb/fuzz/input_file.h"
 #include "tb/fuzz/planted.h"
 #include "tb/unit/gdb_fake_target.h"
@@ -220,6 +221,8 @@ constexpr Reader kReaders[] = {
     {"trend", "sw/fovea/regression/trend\\.", trend},
     {"gdb", "sw/fovea/(gdb_packet|gdb_protocol)", gdb},
     {"console", "sw/fovea/dialogue", console},
+    {"edma", "model/dma/core/(channel_controller|commands|edma_registers|param_set)", edma},
+    {"engine", "model/engine/core/(engine_registers|tlm_backend|remap_job|remap_model|map_reader|packer)", engine},
 };
 
 }  // namespace

@@ -550,27 +550,27 @@ TEST_F(TimerTest, AnArmedWatchdogEndsByAResetOnly) {
 }
 
 TEST_F(TimerTest, AWatchdogIsServedAndThenExpiresAtItsPeriod) {
-  test::Bus& bus = s.served_bus;
-  bus.write(kPrd12, 1000);
-  bus.write(kTgcr, 0xB);  // watchdog mode
-  bus.write(kTcr, 2u << 6);
+  test::Bus& served = s.served_bus;
+  served.write(kPrd12, 1000);
+  served.write(kTgcr, 0xB);  // watchdog mode
+  served.write(kTcr, 2u << 6);
   run_until(now() + 100'000'000);
   EXPECT_FALSE(s.served_expired.read());  // not active yet: it does not count
-  bus.write(kWdtcr, 0xA5C6'4000);
-  bus.write(kWdtcr, 0xDA7E'4000);
+  served.write(kWdtcr, 0xA5C6'4000);
+  served.write(kWdtcr, 0xDA7E'4000);
   for (int n = 0; n < 5; ++n) {
     run_until(now() + 30'000'000);  // 720 clocks
     EXPECT_FALSE(s.served_expired.read());
-    bus.write(kWdtcr, 0xA5C6'4000);
-    bus.write(kWdtcr, 0xDA7E'4000);
+    served.write(kWdtcr, 0xA5C6'4000);
+    served.write(kWdtcr, 0xDA7E'4000);
   }
-  EXPECT_EQ(bus.read(kTim12), 0u);
+  EXPECT_EQ(served.read(kTim12), 0u);
   const std::uint64_t base = now();
   run_until(base + 41'600'000);  // 998 clocks
   EXPECT_FALSE(s.served_expired.read());
   run_until(base + 41'750'000);
   EXPECT_TRUE(s.served_expired.read());
-  EXPECT_EQ(bus.read(kWdtcr) & 0x8000, 0x8000u);
+  EXPECT_EQ(served.read(kWdtcr) & 0x8000, 0x8000u);
   EXPECT_STREQ(s.served_timer.reset_cause(), "the watchdog expired");
 }
 
