@@ -93,6 +93,33 @@ State i2c(bool running) {
   return s;
 }
 
+/// A watchdog that waits for its second key, or runs: only the keys, and what does not count, can be written.
+State watchdog(bool active) {
+  State s{"timer2", active ? "watchdog active" : "watchdog pre-active",
+          "family: SPRUH82C 30.1.6; which registers: Linux drivers/watchdog/davinci_wdt.c"};
+  s.enter = {{"PRD12", ~0u}, {"TGCR", 0xB}, {"TCR", 2u << 6}, {"WDTCR", 0xA5C6'4000}};
+  if (active) s.enter.push_back({"WDTCR", 0xDA7E'4000});
+  s.locked = {{"TIM12", ~0u}, {"TIM34", ~0u}, {"PRD12", ~0u}, {"PRD34", ~0u}, {"TCR", ~0u}, {"TGCR", ~0u}};
+  s.left_out = {"WDTCR"};  // a word that is no key expires it
+  return s;
+}
+
+/// Video ports that run take their settings with the next vertical sync, and read back what is written.
+State running(const char* block, std::vector<Write> enter, std::vector<Bits> ones) {
+  State s{block, "running", "assumed: registers that a sync takes over read back at once, as Linux drivers modify them"};
+  s.enter = std::move(enter);
+  s.ones = std::move(ones);
+  return s;
+}
+
+State engine(bool busy) {
+  State s = as_declared("engine");
+  if (!busy) return s;
+  s.name = "a job under way";
+  s.enter = {{"CTRL", 1}, {"SIZE", 0x0100'0100}, {"SUBMIT", 1}};
+  return s;
+}
+
 }  // namespace
 
 const std::vector<State>& states() {
@@ -100,10 +127,12 @@ const std::vector<State>& states() {
       timing_of_sdram(false), timing_of_sdram(true), edma(true), edma(false), as_declared("edma_tc0"),
       as_declared("edma_tc1"), as_declared("edma_tc2"), as_declared("edma_tc3"), pll("pll1", false), pll("pll1", true),
       pll("pll2", false), pll("pll2", true), psc(false), psc(true), as_declared("system"), as_declared("aintc"),
-      as_declared("timer0"), as_declared("timer1"), as_declared("timer2"), as_declared("timer3"), as_declared("timer4"),
+      as_declared("timer0"), as_declared("timer1"), as_declared("timer2"), watchdog(false), watchdog(true), as_declared("timer3"), as_declared("timer4"),
       uart("uart0", false), uart("uart0", true), uart("uart1", false), uart("uart1", true), gpio(), i2c(false),
-      i2c(true), as_declared("vpss"), as_declared("isif"), as_declared("osd"), as_declared("venc"),
-      as_declared("engine")};
+      i2c(true), as_declared("vpss"), as_declared("isif"),
+      running("isif", {{"SYNCEN", 3}}, {{"SYNCEN", 3}}), as_declared("osd"),
+      running("osd", {{"VIDWINMD", 3}}, {{"VIDWINMD", 3}}), as_declared("venc"),
+      running("venc", {{"CLKCTL", 1}, {"VMOD", 0x43}}, {{"VMOD", 1}, {"CLKCTL", 1}}), engine(false), engine(true)};
   return all;
 }
 
