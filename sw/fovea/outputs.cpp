@@ -100,13 +100,6 @@ bool remaps_in_a_row(std::span<const StatRow> stats) {
 
 }  // namespace
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 void collect(const StatGroup& group, std::vector<StatRow>& rows) {
   for (const auto* s : group.stats())
     rows.push_back({s->name(), s->value(), s->unit(), s->sentence()});

@@ -12,6 +12,8 @@
 #include "model/common/stats.h"
 #include "sw/fovea/experiment.h"
 #include "sw/fovea/provenance.h"
+#include "sw/fovea/results/csv.h"
+#include "sw/fovea/results/stored_run.h"
 
 namespace fovea::app {
 
@@ -73,11 +75,7 @@ std::string ns_text(Picoseconds ps);
 std::string config_json(const ParamSet& params, const Experiment& experiment,
                         const Provenance& provenance);
 
-/// A warning as it is listed in stats.json.
-struct Warning {
-  std::string kind, what;
-  std::uint64_t count = 0;
-};
+using results::Warning;
 std::vector<Warning> collect_warnings(const Diagnostics& diagnostics, bool replay = false);
 
 /// What a run says of itself in words; empty: nothing.
@@ -94,8 +92,7 @@ std::string stats_json(std::vector<StatRow> rows, bool complete,
 std::string host_json(std::vector<StatRow> rows, std::span<const std::string> command,
                       std::string_view version);
 
-/// A field of a CSV file, quoted if necessary (RFC 4180).
-std::string csv_field(const std::string& text);
+using results::csv_field;
 
 /// The header and one line of frames.csv and timeline.csv, for files that are written during the
 /// run.

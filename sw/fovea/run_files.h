@@ -5,11 +5,11 @@
 #include <string_view>
 
 #include "sw/fovea/output_folder.h"
+#include "sw/fovea/results/stored_run.h"
 
 namespace fovea::app {
 
-/// The value of "format" in config.json of a run folder.
-inline constexpr std::string_view kRunFormat = "fovea run 1";
+using results::kRunFormat;
 
 /// True for names, relative to the folder, of files that Fovea writes ("stats.json",
 /// "frames/frame_000000.png"). RunDir writes no other files.

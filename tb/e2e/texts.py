@@ -76,7 +76,8 @@ CASES = {
                 "r4/latency.csv", "t.cmd", "t.txt", "l.txt", "t.dramsys-stl", "t.dramsys-rstl", "t.ramulator",
                 "t.ramulator2", "t.dramsim3"]],
     "limits": [["limits tiny.yaml -j 1 --over ddr.request_latency=0cycles,8cycles -o l",
-                "limits tiny.yaml -j 1 --find cpu.ahb_ratio=2..6 --probes 3 --require frame.remap_time.mean<50us -o f"],
+                "limits tiny.yaml -j 1 --find cpu.ahb_ratio=2..6 --probes 3 --require frame.remap_time.mean<=50e-6 "
+                "-o f"],
                ["l/limits.csv", "l/points.csv", "f/limits.csv", "f/points.csv", "f/answer.txt"]],
     "wrong": [["nothing", "run", "run none.yaml", "run key.yaml", "run unit.yaml", "run range.yaml", "run list.yaml",
                f"{TINY} -o w -s ddr.nothing=1", f"{TINY} -o w -s ddr.request_latency", f"{TINY} -o w -s ddr.tRFC=fast",
@@ -104,6 +105,7 @@ def plain(text, out):
     text = re.sub(r"\b20\d\d-\d\d-\d\d(T| )\d\d:\d\d(:\d\d)?Z?", "DATE", text)
     text = re.sub(r"^host .*\n( {8}.*\n)*", "host ...\n", text, flags=re.M)
     text = re.sub(r"^.*data-figure=\"(wall_time|realtime_factor|mips|peak_rss)\".*\n", "", text, flags=re.M)
+    text = re.sub(r"^[0-9a-f]{16},", "POINT,", text, flags=re.M)
     text = re.sub(r"^(\[\d+\] .*: )[0-9.]+ s(; .*)?$", r"\1...", text, flags=re.M)
     return re.sub(r"[0-9.]+(x real time| million instructions a second| s on the host)", r"...\1", text)
 

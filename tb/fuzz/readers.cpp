@@ -19,7 +19,7 @@
 #include "sw/fovea/png.h"
 #include "sw/fovea/regression/baseline.h"
 #include "sw/fovea/regression/check.h"
-#include "sw/fovea/regression/table_file.h"
+#include "sw/fovea/results/table_file.h"
 #include "sw/fovea/regression/trend.h"
 #include "sw/fovea/replay_params.h"
 #include "sw/fovea/safe_json.h"
@@ -82,7 +82,7 @@ Result json(std::string_view bytes) {
 }
 
 Result table(std::string_view bytes) {
-  const regression::TableFile t(InputFile(bytes).name(), {"function", "clocks"});
+  const results::TableFile t(InputFile(bytes).name(), {"function", "clocks"});
   std::uint64_t sum = 0;
   for (std::size_t row = 0; row < t.rows(); ++row) sum += t.text(row, "function").size() + t.count(row, "clocks");
   planted(t.rows() > 3 && sum > 0);
@@ -212,7 +212,7 @@ constexpr Reader kReaders[] = {
     {"calibration", "sw/fovea/(calibration|safe_yaml)", calibration},
     {"baseline", "sw/fovea/regression/(baseline|bless|tolerance)\\.", baseline},
     {"json", "sw/fovea/safe_json", json},
-    {"table", "sw/fovea/(regression/table_file|report/csv)", table},
+    {"table", "sw/fovea/results/(table_file|csv)", table},
     {"text_trace", "model/trace/core/(text_trace|line_reader)", text_trace},
     {"binary_trace", "model/trace/core/(trace_file|trace_code)", binary_trace},
     {"foreign_trace", "model/trace/core/(foreign_trace|line_reader)", foreign_trace},

@@ -306,9 +306,9 @@ TEST_F(BlameTest, ClocksBeforeTheWindowAreNotItsClocks) {
 TEST_F(BlameTest, DamagedTablesAreNamedWithTheirRow) {
   const std::string good = after.profile;
   after.profile += "frames,x,x.c,1,issue,,,many,0\n";
-  EXPECT_THAT(user_error([&] { difference(); }), testing::AllOf(HasSubstr("row 11"), HasSubstr("'many'")));
+  EXPECT_THAT(user_error([&] { difference(); }), testing::AllOf(HasSubstr("profile.csv:11: "), HasSubstr("'many'")));
   after.profile = good + "frames,x\n";
-  EXPECT_THAT(user_error([&] { difference(); }), testing::AllOf(HasSubstr("row 11"), HasSubstr("2 fields")));
+  EXPECT_THAT(user_error([&] { difference(); }), testing::AllOf(HasSubstr("profile.csv:11: "), HasSubstr("2 fields")));
   after.profile = "\"a\"\"b,c\n";
   EXPECT_THAT(user_error([&] { difference(); }), HasSubstr("profile.csv:2: a quote without its end"));
 }

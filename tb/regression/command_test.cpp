@@ -60,7 +60,7 @@ TEST_F(RegressionCommandTest, AFieldThatIsNoNumberIsShownByItsBegin) {
   damaged.profile.clear();
   EXPECT_EQ(cli({"compare", a, damaged.write(dir, "damaged").string()}), 2);
   EXPECT_THAT(err.str(),
-              HasSubstr("stalls.csv', row 2: '" + field.substr(0, 40) + "...' is not a whole number (cycles)"));
+              HasSubstr("stalls.csv:2: '" + field.substr(0, 40) + "...' is not a whole number"));
   for (const char* wrong : {"12x", "x12", "18446744073709551616"}) {
     damaged.stalls = std::string("dcache,lut,bridge,") + wrong + "\n";
     EXPECT_EQ(cli({"compare", a, damaged.write(dir, "damaged").string()}), 2) << wrong;
@@ -126,12 +126,12 @@ TEST_F(RegressionCommandTest, FoldersThatAreNoCompleteRunAreRefusedInOneLine) {
   r.complete = false;
   refused(r.write(dir, "partial").string(), "partial results");
   dir.write("partial/stats.json", "{\"band\": \"not run\"}");
-  refused((dir / "partial").string(), "partial results");
+  refused((dir / "partial").string(), "does not say whether its results are complete");
   r.no_stats = true;
   refused(r.write(dir, "unfinished").string(), "has no stats.json");
   profiled().write(dir, "damaged");
   dir.write("damaged/stats.json", "{\"complete\": tr");
-  refused((dir / "damaged").string(), "not a JSON object");
+  refused((dir / "damaged").string(), "not a file of JSON");
 }
 
 TEST_F(RegressionCommandTest, OtherVersionsAreRefusedOrListed) {

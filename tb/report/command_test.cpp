@@ -88,7 +88,7 @@ TEST(ReportCommandTest, AnswersAboutOtherRunsAndDamagedOnesAreRefused) {
       {head + "plain,,x\n", "binds.csv:2: 3 fields; the header has 16"},
       {head + "plain,,x,yes,much,frame.remap_time.mean,0.01,0.01,0.01,s,run,,,,,\n",
        "binds.csv:2: 'much' is not a number"},
-      {"resource,binds\n", "there is no column 'gain'"},
+      {"resource,binds\n", "binds.csv:1: there is no column 'metric'"},
       {"", "the header is missing"}};
   for (const auto& [contents, message] : cases) {
     dir.write("limits/binds.csv", contents);

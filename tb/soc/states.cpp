@@ -106,7 +106,7 @@ State watchdog(bool active) {
 
 /// Video ports that run take their settings with the next vertical sync, and read back what is written.
 State running(const char* block, std::vector<Write> enter, std::vector<Bits> ones) {
-  State s{block, "running", "assumed: registers that a sync takes over read back at once, as Linux drivers modify them"};
+  State s{block, "running", "assumed: what a sync takes over reads back at once, as Linux drivers modify it"};
   s.enter = std::move(enter);
   s.ones = std::move(ones);
   return s;
@@ -127,7 +127,8 @@ const std::vector<State>& states() {
       timing_of_sdram(false), timing_of_sdram(true), edma(true), edma(false), as_declared("edma_tc0"),
       as_declared("edma_tc1"), as_declared("edma_tc2"), as_declared("edma_tc3"), pll("pll1", false), pll("pll1", true),
       pll("pll2", false), pll("pll2", true), psc(false), psc(true), as_declared("system"), as_declared("aintc"),
-      as_declared("timer0"), as_declared("timer1"), as_declared("timer2"), watchdog(false), watchdog(true), as_declared("timer3"), as_declared("timer4"),
+      as_declared("timer0"), as_declared("timer1"),
+      as_declared("timer2"), watchdog(false), watchdog(true), as_declared("timer3"), as_declared("timer4"),
       uart("uart0", false), uart("uart0", true), uart("uart1", false), uart("uart1", true), gpio(), i2c(false),
       i2c(true), as_declared("vpss"), as_declared("isif"),
       running("isif", {{"SYNCEN", 3}}, {{"SYNCEN", 3}}), as_declared("osd"),

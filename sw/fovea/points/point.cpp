@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
-#include "sw/fovea/safe_json.h"
+#include "sw/fovea/results/stored_run.h"
 #include "sw/fovea/sha256.h"
 
 namespace fovea::points {
@@ -24,15 +22,9 @@ void read_stats(PointResult& result) {
   const std::filesystem::path file = result.folder / "run" / "stats.json";
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return;
-  const auto json = app::read_json(file);
-  if (!json.is_object())
-    throw UserError(fmt::format("'{}' is not a stats.json of Fovea; remove its folder and try again",
-                                app::one_line(file.string())));
-  for (const auto& [name, row] : json.items()) {
-    if (!row.is_object() || !row.contains("value")) continue;
-    if (row["value"].is_number()) result.stats[name] = row["value"].get<double>();
-    if (row.contains("unit") && row["unit"].is_string())
-      result.units[name] = row["unit"].get<std::string>();
+  for (const results::Figure& f : results::read_figures(file)) {
+    if (f.value) result.stats[f.name] = std::visit([](auto v) { return static_cast<double>(v); }, *f.value);
+    result.units[f.name] = f.unit;
   }
 }
 

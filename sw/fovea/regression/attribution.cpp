@@ -10,10 +10,13 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
-#include "sw/fovea/regression/table_file.h"
+#include "sw/fovea/results/table_file.h"
 
 namespace fovea::regression {
 namespace {
+
+using results::TableFile;
+using results::table_row;
 
 namespace fs = std::filesystem;
 
@@ -111,16 +114,10 @@ std::vector<CallPath> read_paths(const fs::path& file, const FunctionKeys& keys)
 std::vector<ObjectPlace> read_objects(const fs::path& file) {
   const TableFile table(file, kObjectColumns);
   std::vector<ObjectPlace> out;
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    const std::string& text = table.text(i, "address");
-    ObjectPlace o{table.text(i, "object"), 0, table.count(i, "size")};
-    const std::size_t digits = text.starts_with("0x") ? 2 : 0;
-    const auto [end, error] = std::from_chars(text.data() + digits, text.data() + text.size(), o.address, 16);
-    if (error != std::errc{} || end != text.data() + text.size())
-      throw UserError(fmt::format("'{}', row {}: '{}' is not an address", app::one_line(file.string()), i + 2,
-                                  app::one_line(text, 40)));
-    out.push_back(std::move(o));
-  }
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    out.push_back({table.text(i, "object"),
+                   results::hexadecimal(table.place(i), table.text(i, "address")),
+                   table.count(i, "size")});
   return out;
 }
 

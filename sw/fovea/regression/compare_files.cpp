@@ -2,11 +2,13 @@
 #include <nlohmann/json.hpp>
 
 #include "sw/fovea/regression/compare.h"
-#include "sw/fovea/regression/table_file.h"
+#include "sw/fovea/results/table_file.h"
 #include "sw/fovea/safe_json.h"
 
 namespace fovea::regression {
 namespace {
+
+using results::table_row;
 
 using Json = nlohmann::ordered_json;
 

@@ -9,11 +9,14 @@
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/regression/attribution.h"
 #include "sw/fovea/regression/baseline.h"
-#include "sw/fovea/regression/table_file.h"
+#include "sw/fovea/results/table_file.h"
 #include "sw/fovea/sha256.h"
 
 namespace fovea::regression {
 namespace {
+
+using results::TableFile;
+using results::table_row;
 
 namespace fs = std::filesystem;
 

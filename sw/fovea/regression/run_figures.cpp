@@ -4,71 +4,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "model/common/check.h"
 #include "model/common/nearest.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/safe_json.h"
 #include "sw/fovea/outputs.h"
-#include "sw/fovea/run_files.h"
+#include "sw/fovea/results/stored_run.h"
 
 namespace fovea::regression {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-
-json read_object(const fs::path& file) {
-  const json value = app::read_json(file);
-  if (!value.is_object())
-    throw UserError(fmt::format("'{}' is not a JSON object; allowed: a file that 'fovea run' wrote",
-                                app::one_line(file.string())));
-  return value;
-}
-
-std::vector<std::string> texts_of(const json& object, const char* name) {
-  std::vector<std::string> out;
-  for (const auto& word : app::json_member(object, name))
-    if (word.is_string()) out.push_back(word.get<std::string>());
-  return out;
-}
 
 /// Results of `exec` and `replay` name their command; those of versions before tell by the input's hash.
-Subject subject_of(const json& config, const std::map<std::string, std::string>& hashes) {
-  const std::string command = app::json_text(config, "command");
-  if (command == command_of(ResultKind::kExec) || hashes.contains("program"))
-    return {ResultKind::kExec, app::json_text(config, "input"), texts_of(config, "arguments"),
-            texts_of(config, "options")};
-  if (command == command_of(ResultKind::kReplay) || hashes.contains("trace"))
-    return {ResultKind::kReplay, app::json_text(config, "input"), {}, texts_of(config, "options")};
-  return {ResultKind::kRun, app::json_text(config, "experiment")};
+Subject subject_of(const results::StoredRun& run, const std::map<std::string, std::string>& hashes) {
+  if (run.command == command_of(ResultKind::kExec) || hashes.contains("program"))
+    return {ResultKind::kExec, run.input, run.arguments, run.options};
+  if (run.command == command_of(ResultKind::kReplay) || hashes.contains("trace"))
+    return {ResultKind::kReplay, run.input, {}, run.options};
+  return {ResultKind::kRun, run.experiment};
 }
 
-void read_config(const json& config, RunFigures& run) {
-  run.version = app::json_text(config, "version");
-  run.commit = app::json_text(config, "commit");
-  run.modified = app::json_member(config, "modified") == true;
-  for (const auto& [name, hash] : app::json_member(config, "sha256").items())
-    run.hashes[name] = hash.is_string() ? hash.get<std::string>() : "";
-  run.subject = subject_of(config, run.hashes);
-  for (const auto& [key, p] : app::json_member(config, "params").items()) {
-    if (!p.is_object()) continue;
-    Parameter& parameter = run.parameters[key];
-    parameter = {app::json_text(p, "value"), app::json_text(p, "default"), app::json_text(p, "tag")};
-    parameter.path = run.hashes.contains(key);
-  }
+double real(const StatBase::Value& value) {
+  return std::visit([](auto v) { return static_cast<double>(v); }, value);
 }
 
-void read_stats(const json& stats, RunFigures& run) {
-  for (const auto& [name, row] : stats.items()) {
-    if (!row.is_object() || !row.contains("value") || !row.contains("unit")) continue;
-    const json& value = row["value"];
-    Metric& m = run.metrics[name];
-    m.unit = app::json_text(row, "unit");
-    m.whole = value.is_number_integer();
-    if (value.is_number()) m.value = value.get<double>();
-  }
+Metric metric_of(const results::Figure& f) {
+  Metric m{{}, f.unit, f.whole};
+  if (f.value) m.value = real(*f.value);
+  return m;
 }
 
 }  // namespace
@@ -98,40 +60,21 @@ double RunFigures::value(const std::string& name) const {
 }
 
 RunFigures read_run(const fs::path& folder) {
-  const std::string name = app::one_line(folder.string());
-  std::error_code error;
-  if (!fs::is_directory(folder, error))
-    throw UserError(
-        fmt::format("'{}' is not a folder; allowed: a folder of results, as 'fovea run', "
-                    "'exec' and 'replay' write it",
-                    name));
-  if (!app::is_run_folder(folder))
-    throw UserError(
-        fmt::format("'{}' is not a folder of results: it has no config.json of Fovea's; "
-                    "allowed: a folder that 'fovea run', 'exec' or 'replay' wrote",
-                    name));
-  if (!fs::exists(folder / "stats.json", error))
-    throw UserError(fmt::format("'{}' has no stats.json: its run did not end; allowed: complete "
-                                "results",
-                                name));
+  const results::StoredRun stored = results::read_stored_run(folder);
   RunFigures run;
   run.folder = folder;
-  const json stats = read_object(folder / "stats.json");
-  if (app::json_member(stats, "complete") != true)
-    throw UserError(fmt::format("'{}' holds partial results: its run was stopped or its guest "
-                                "failed; allowed: complete results",
-                                name));
-  read_config(read_object(folder / "config.json"), run);
-  read_stats(stats, run);
-  if (fs::exists(folder / "host.json", error)) {
-    const json host = read_object(folder / "host.json");
-    const json& words = app::json_member(host, "command");
-    if (!words.empty()) run.command.push_back("fovea");  // the file has the words behind it
-    for (const auto& word : words)
-      if (word.is_string()) run.command.push_back(word);
-    const json& counted = app::json_member(app::json_member(host, "host_instructions"), "value");
-    if (counted.is_number()) run.host_instructions = counted.get<double>();
-  }
+  run.version = stored.version;
+  run.commit = stored.commit;
+  run.modified = stored.modified;
+  run.hashes.insert(stored.hashes.begin(), stored.hashes.end());
+  run.subject = subject_of(stored, run.hashes);
+  for (const results::Parameter& p : stored.parameters)
+    run.parameters[p.key] = {p.value, p.initial, p.tag, run.hashes.contains(p.key)};
+  for (const results::Figure& f : stored.figures) run.metrics[f.name] = metric_of(f);
+  if (!stored.command_line.empty()) run.command.push_back("fovea");  // the file has the words behind it
+  run.command.insert(run.command.end(), stored.command_line.begin(), stored.command_line.end());
+  for (const results::Figure& f : stored.host)
+    if (f.name == "host_instructions" && f.value) run.host_instructions = real(*f.value);
   return run;
 }
 

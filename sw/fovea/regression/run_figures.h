@@ -48,8 +48,7 @@ struct RunFigures {
   double value(const std::string& name) const;
 };
 
-/// Reads the complete results in `folder`. @throws UserError: no such folder, not a folder of
-/// results, partial results, or files that cannot be read
+/// Reads the complete results in `folder`. @throws UserError as results::read_stored_run() does
 RunFigures read_run(const std::filesystem::path& folder);
 
 /// Nearest name of a figure by edit distance; empty if none is similar.

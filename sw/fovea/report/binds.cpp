@@ -10,7 +10,7 @@
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
 #include "sw/fovea/explain/words.h"
-#include "sw/fovea/report/csv.h"
+#include "sw/fovea/results/csv.h"
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/results.h"
 #include "sw/fovea/report/sections.h"
@@ -18,11 +18,9 @@
 namespace fovea::report {
 namespace {
 
-constexpr std::size_t kMaxBytes = 16u << 20;
-
-std::optional<double> number_or_nothing(const CsvPlace& place, const std::string& field) {
+std::optional<double> number_or_nothing(const results::CsvPlace& place, const std::string& field) {
   if (field.empty()) return std::nullopt;
-  return number(place, field);
+  return results::number(place, field);
 }
 
 /// "assumed: 25 % to 57 %", of parameters whose figures are not public.
@@ -44,46 +42,33 @@ std::vector<Relaxed> load_binds(const std::filesystem::path& folder, const Resul
   if (!std::filesystem::exists(file, error))
     throw UserError(
         fmt::format("--limits '{}': it has no binds.csv; allowed: a folder of 'fovea limits --binds'", name));
-  std::map<std::string, std::size_t> columns;
+  static constexpr std::array<std::string_view, 14> kColumns{
+      "resource", "binds", "metric",   "unit",      "by",      "settings", "remark",
+      "gain",     "plain", "reference", "relaxed", "origin", "gain_low", "gain_high"};
   std::vector<Relaxed> out;
   std::optional<std::pair<std::string, double>> other;  // a figure of another run
-  each_csv_record(file, app::read_file(file, kMaxBytes),
-                  [&](const CsvPlace& place, std::span<const std::string> fields) {
-                    const auto refuse = [&](const std::string& why) {
-                      throw UserError(fmt::format("{}:{}: {}", app::one_line(file.string()), place.line, why));
-                    };
-                    if (columns.empty()) {
-                      for (std::size_t i = 0; i < fields.size(); ++i) columns[fields[i]] = i;
-                      for (const char* column : {"resource", "binds", "gain", "metric", "plain", "reference", "relaxed",
-                                                 "unit", "by", "settings", "remark", "origin", "gain_low", "gain_high"})
-                        if (!columns.contains(column)) refuse(fmt::format("there is no column '{}'", column));
-                      return;
-                    }
-                    if (fields.size() != columns.size())
-                      refuse(fmt::format("{} fields; the header has {}", fields.size(), columns.size()));
-                    const auto text = [&](const char* column) { return fields[columns.at(column)]; };
-                    Relaxed r{text("resource"),
-                              text("binds"),
-                              text("metric"),
-                              text("unit"),
-                              text("by"),
-                              text("settings"),
-                              text("remark"),
-                              number_or_nothing(place, text("gain")),
-                              number_or_nothing(place, text("plain")),
-                              number_or_nothing(place, text("reference")),
-                              number_or_nothing(place, text("relaxed")),
-                              text("origin"),
-                              number_or_nothing(place, text("gain_low")),
-                              number_or_nothing(place, text("gain_high"))};
-                    if (!r.plain) return;
-                    const auto own = run.value(r.metric);
-                    if (own && same(*r.plain, *own))
-                      out.push_back(std::move(r));
-                    else
-                      other = {r.metric, *r.plain};
-                  });
-  if (columns.empty()) throw UserError(fmt::format("{}:1: the header is missing", app::one_line(file.string())));
+  results::each_csv_row(file, kColumns, [&](const results::CsvPlace& at, std::span<const std::string> f) {
+    Relaxed r{f[0],
+              f[1],
+              f[2],
+              f[3],
+              f[4],
+              f[5],
+              f[6],
+              number_or_nothing(at, f[7]),
+              number_or_nothing(at, f[8]),
+              number_or_nothing(at, f[9]),
+              number_or_nothing(at, f[10]),
+              f[11],
+              number_or_nothing(at, f[12]),
+              number_or_nothing(at, f[13])};
+    if (!r.plain) return;
+    const auto own = run.value(r.metric);
+    if (own && same(*r.plain, *own))
+      out.push_back(std::move(r));
+    else
+      other = {r.metric, *r.plain};
+  });
   if (out.empty() && other) {
     const auto own = run.value(other->first);
     throw UserError(fmt::format("--limits '{}': it is about runs with {} = {}, '{}' has {}; allowed: answers about the "

@@ -9,15 +9,12 @@
 
 #include "sw/fovea/outputs.h"
 #include "sw/fovea/report/binds.h"
+#include "sw/fovea/results/stored_run.h"
 #include "sw/fovea/slowest.h"
 
 namespace fovea::report {
 
-/// A parameter as config.json lists it.
-struct Parameter {
-  std::string key, value, origin, initial, tag, source, belief, description;
-  bool changed() const { return origin != "default"; }
-};
+using results::Parameter;
 
 /// A bin of latency.csv: `count` requests took from `low_ns` to `high_ns`.
 struct LatencyBin {
@@ -48,7 +45,7 @@ struct Results {
   std::vector<std::pair<std::string, std::string>> hashes;  ///< SHA-256 by key; empty: not known
   std::vector<Parameter> parameters;
   std::vector<app::StatRow> stats, host;  ///< only those that have a value
-  std::vector<app::Warning> warnings;
+  std::vector<results::Warning> warnings;
   std::optional<std::vector<app::FrameRow>> frames;
   std::optional<Timeline> timeline;
   std::optional<std::vector<app::StallRow>> stalls;
@@ -68,8 +65,8 @@ struct LoadOptions {
   bool across_versions = false;  ///< accepts results of another version of Fovea
 };
 
-/// Reads a folder. @throws UserError of one line: not a folder of a run, no or partial results,
-/// another version, a file that is damaged
+/// Reads a folder. @throws UserError of one line: another version, and what results::read_stored_run() and
+/// results::each_csv_row() refuse
 Results load_results(const std::filesystem::path& folder, const LoadOptions& options);
 
 }  // namespace fovea::report

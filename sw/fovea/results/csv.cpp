@@ -1,18 +1,35 @@
-#include "sw/fovea/report/csv.h"
+#include "sw/fovea/results/csv.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "model/common/check.h"
 #include "sw/fovea/checked_file.h"
 
-namespace fovea::report {
+namespace fovea::results {
 namespace {
 
 [[noreturn]] void refuse(const CsvPlace& place, const std::string& why) {
   throw UserError(fmt::format("{}:{}: {}", app::one_line(place.file.string()), place.line, why));
+}
+
+/// For each of `columns`, and then for each other one, which field of the header has its name.
+std::vector<std::size_t> order_of(const CsvPlace& place, std::span<const std::string> header,
+                                  std::span<const std::string_view> columns) {
+  std::vector<std::size_t> order;
+  for (const std::string_view column : columns) {
+    const auto found = std::find(header.begin(), header.end(), column);
+    if (found == header.end())
+      refuse(place, fmt::format("there is no column '{}'; allowed: a table with the columns {}", column,
+                                fmt::join(columns, ",")));
+    order.push_back(static_cast<std::size_t>(found - header.begin()));
+  }
+  for (std::size_t i = 0; i < header.size(); ++i)
+    if (std::find(columns.begin(), columns.end(), header[i]) == columns.end()) order.push_back(i);
+  return order;
 }
 
 }  // namespace
@@ -24,6 +41,7 @@ void each_csv_record(
   std::size_t at = 0, line = 1;
   while (at < text.size()) {
     const CsvPlace place{file, line};
+    const std::size_t begin = at;
     std::size_t used = 0;
     for (bool more = true; more;) {
       if (used == kMaxCsvFields) refuse(place, fmt::format("a row of more than {} fields", kMaxCsvFields));
@@ -44,31 +62,40 @@ void each_csv_record(
           }
         }
       }
-      while (at < text.size() && text[at] != ',' && text[at] != '\n') field += text[at++];
+      for (; at < text.size() && text[at] != ',' && text[at] != '\n'; ++at)
+        if (text[at] != '\r' || (at + 1 < text.size() && text[at + 1] != '\n')) field += text[at];
       more = at < text.size() && text[at] == ',';
       if (at < text.size()) line += text[at++] == '\n';
     }
-    row(place, std::span(fields).first(used));
+    const bool blank = used == 1 && fields.front().empty() && text[begin] != '"';
+    if (!blank) row(place, std::span(fields).first(used));
   }
 }
 
 void each_csv_row(const std::filesystem::path& file, std::span<const std::string_view> columns,
                   const std::function<void(const CsvPlace&, std::span<const std::string>)>& row,
-                  std::size_t max_bytes) {
+                  std::size_t max_bytes, const std::function<void(std::span<const std::string>)>& others) {
   const std::string text = app::read_file(file, max_bytes);
-  std::size_t expected = 0;
+  std::vector<std::size_t> order;  // where the fields stand in the file
+  std::vector<std::string> ordered;
   each_csv_record(file, text, [&](const CsvPlace& place, std::span<const std::string> fields) {
-    if (expected == 0) {
-      for (std::size_t i = 0; i < columns.size(); ++i)
-        if (i >= fields.size() || fields[i] != columns[i])
-          refuse(place, fmt::format("column {} is not '{}'", i + 1, columns[i]));
-      expected = fields.size();
-    } else if (fields.size() != expected) {
-      refuse(place, fmt::format("{} fields; the header has {}", fields.size(), expected));
-    }
-    row(place, fields);
+    const bool header = order.empty();
+    if (header) order = order_of(place, fields, columns);
+    if (fields.size() != order.size())
+      refuse(place, fmt::format("{} fields; the header has {}", fields.size(), order.size()));
+    ordered.resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) ordered[i] = fields[order[i]];
+    if (!header) return row(place, ordered);
+    if (others) others(std::span(ordered).subspan(columns.size()));
   });
-  if (expected == 0) refuse({file, 1}, "the header is missing");
+  if (order.empty()) refuse({file, 1}, "the header is missing");
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
 }
 
 std::uint64_t whole(const CsvPlace& place, const std::string& field) {
@@ -108,4 +135,4 @@ std::optional<std::uint64_t> time_ps(const CsvPlace& place, const std::string& f
   return whole(place, field.substr(0, dot) + field.substr(dot + 1));
 }
 
-}  // namespace fovea::report
+}  // namespace fovea::results
