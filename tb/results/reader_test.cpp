@@ -98,7 +98,8 @@ struct StoredRunTest : testing::Test {
     "origin": "set", "tag": "assumed", "source": "s", "belief": {"low": "0", "high": "3"}, "description": "d"}}})";
   std::string stats = R"({"complete": true, "neg": {"value": -5, "unit": "1"}, "ended_by": "frames",
     "kernel": "staged", "warnings": [{"kind": "w", "what": "t", "count": 2}, {}],
-    "n": {"value": 7, "unit": "1", "description": "d"}, "m": {"value": null, "unit": "s"}, "r": {"value": 1.5, "unit": "s", "description": "d"}})";
+    "n": {"value": 7, "unit": "1", "description": "d"}, "m": {"value": null, "unit": "s"},
+    "r": {"value": 1.5, "unit": "s", "description": "d"}})";
   std::string host = R"({"command": ["run", "x"], "wall_time": {"value": 1, "unit": "s"}})";
   StoredRun read(bool partial = false) {
     dir.write("r/config.json", config);
