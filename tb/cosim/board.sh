@@ -66,4 +66,9 @@ grep -q "key 'engine' is none; allowed: rtl, both, both_tlm" none.log || fail "$
 run other -s engine=rtl --waves small.yaml
 [ $? = 2 ] || fail "waveforms over another file: status $?"
 grep -q 'is not an FST file' other.log || fail "$(cat other.log)"
+echo precious >precious.fst
+ln -sf precious.fst link.fst
+run link -s engine=rtl --waves link.fst
+[ $? = 2 ] || fail "waveforms through a link: status $?"
+grep -q 'is a symbolic link' link.log && [ "$(cat precious.fst)" = precious ] || fail "$(cat link.log)"
 echo "the RTL on the board, alone and beside its model: good"

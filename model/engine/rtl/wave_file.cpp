@@ -17,6 +17,8 @@ constexpr Picoseconds kMostLow = 5 * kPsPerNs;  ///< before an edge that ends a 
 void check_file(const std::filesystem::path& file) {
   // An FST file begins with its header, block 0, of 329 bytes (GTKWave, fstapi.c).
   constexpr std::array<char, 9> kHeader{0, 0, 0, 0, 0, 0, 0, 1, 73};
+  if (std::filesystem::is_symlink(file))
+    throw UserError("--waves '" + file.string() + "': it is a symbolic link; choose another name");
   std::array<char, 9> head{};
   std::ifstream in(file, std::ios::binary);
   in.read(head.data(), head.size());
