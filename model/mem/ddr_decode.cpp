@@ -1,6 +1,7 @@
 #include "model/mem/ddr_decode.h"
 
 #include <algorithm>
+#include <array>
 
 namespace fovea::mem {
 namespace {
@@ -8,11 +9,10 @@ namespace {
 constexpr unsigned kLargestCL = 5, kLargestPage = 3, kMostBanks = 3;  // as their fields have them
 bool reserved_CL(unsigned CL) { return CL < 2 || CL > kLargestCL; }
 
-/// SDBCR2.PASR as in a mobile part's extended mode register (JESD209); reserved: all is refreshed.
+/// SDBCR2.PASR as in a mobile part's extended mode register (JESD209): all, a half, a quarter, an eighth, a sixteenth;
+/// reserved: all is refreshed.
 bool reserved_PASR(unsigned pasr) { return pasr == 3 || pasr == 4 || pasr == 7; }
-unsigned refreshed_log2(unsigned pasr) {
-  return reserved_PASR(pasr) ? 0 : pasr > 4 ? pasr - 2 : pasr;
-}
+constexpr std::array<unsigned, 8> kRefreshedLog2{0, 1, 2, 0, 0, 3, 4, 0};
 
 std::string text(unsigned n) { return std::to_string(n); }
 
@@ -49,7 +49,7 @@ DdrConfig decode(const DdrRegs& regs) {
     c.low_power = regs.sdrcr.sr_pd.get()        ? LowPower::kPowerDown
                   : regs.sdrcr.mclkstopen.get() ? LowPower::kClockStop
                                                 : LowPower::kSelfRefresh;
-  if (t.mobile) c.refreshed_log2 = refreshed_log2(regs.sdbcr2.pasr.get());
+  if (t.mobile) c.refreshed_log2 = kRefreshedLog2[regs.sdbcr2.pasr.get()];
   return c;
 }
 

@@ -264,5 +264,18 @@ TEST_F(BufferTest, FailedFillIsNotKept) {
   EXPECT_EQ(m.core.reg(6), m.core.reg(8));
 }
 
+// A clock at an edge of the bus stays; any other waits for the next edge, whatever the ratio of the clocks is.
+TEST(BusInterfaceTest, TheNextEdgeOfTheBusIsTheNextMultipleOfTheRatio) {
+  FlatPort port(0, 4096);
+  for (unsigned ratio = 1; ratio <= 8; ++ratio) {
+    const BusInterface bus(port, ratio);
+    for (std::uint64_t cycle = 0; cycle < 200; ++cycle) {
+      std::uint64_t edge = cycle;
+      while (edge % ratio != 0) ++edge;
+      EXPECT_EQ(bus.ahb(cycle), edge) << ratio << " " << cycle;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace fovea::cpu::test::buffer

@@ -211,6 +211,41 @@ TEST_F(ParamTest, RemembersWhetherTheUserSetIt) {
   EXPECT_TRUE(params.count.user_set());
 }
 
+// A part of a key is known to belong to some, of which the shortest three are named; those of numbered copies are not.
+TEST(ParamHintTest, APartOfAKeyNamesTheKeysThatHaveIt) {
+  struct Group : ParamGroup {
+    explicit Group(const char* prefix) : ParamGroup(prefix) {}
+    IntParam a{*this, "kernel", IntParam::Unit::kCount, 3, 0, 10, "a", Origin::kChoice, ""};
+  };
+  ParamSet set;
+  const auto error = [&](const char* key) {
+    try {
+      set.set(key, "1");
+    } catch (const UserError& e) {
+      return std::string(e.what());
+    }
+    return std::string("taken");
+  };
+  Group numbered("load.1"), other_number("camera.0"), first("firmware"), second("cpu"), third("engine"),
+      last("replays"), digits("v2");
+  set.add(numbered);
+  EXPECT_EQ(error("kernel"), "unknown key 'kernel'; 'fovea params' lists all keys");
+  set.add(other_number);
+  EXPECT_EQ(error("kernel"), "unknown key 'kernel'; 'fovea params' lists all keys");
+  set.add(first);
+  EXPECT_EQ(error("kernel"), "unknown key 'kernel'; did you mean 'firmware.kernel'?");
+  EXPECT_EQ(error("firmware"), "unknown key 'firmware'; did you mean 'firmware.kernel'?");
+  EXPECT_EQ(error("ke"), "unknown key 'ke'; 'fovea params' lists all keys");
+  set.add(second);
+  EXPECT_EQ(error("kernel"), "unknown key 'kernel'; did you mean 'cpu.kernel' or 'firmware.kernel'?");
+  set.add(third);
+  set.add(last);
+  EXPECT_EQ(error("kernel"),
+            "unknown key 'kernel'; did you mean 'cpu.kernel', 'engine.kernel' or 'replays.kernel'?");
+  set.add(digits);
+  EXPECT_EQ(error("kernel"), "unknown key 'kernel'; did you mean 'v2.kernel', 'cpu.kernel' or 'engine.kernel'?");
+}
+
 TEST(ParamDeathTest, DeclaringAKeyTwiceIsADefect) {
   Params a, b;
   ParamSet set;
