@@ -100,8 +100,10 @@ CASES = {
 def plain(text, out):
     """Without what says when, where and how fast."""
     text = text.replace(str(out), "OUT")
-    text = re.sub(r"(commit\W{1,12})[0-9a-f]{12,40}(, modified)?", r"\1COMMIT", text)
+    text = re.sub(r"(commit\W{1,12})[0-9a-f]{12,40}(, modified|-modified)?\b", r"\1COMMIT", text)
+    text = re.sub(r"\b[0-9a-f]{64}\b", "DIGEST", text)
     text = text.replace('"modified": true', '"modified": false')
+    text = re.sub(r'<p class="note">The simulator.s source was modified: [^<]*</p>', "", text)
     text = re.sub(r"\b20\d\d-\d\d-\d\d(T| )\d\d:\d\d(:\d\d)?Z?", "DATE", text)
     text = re.sub(r"^host .*\n( {8}.*\n)*", "host ...\n", text, flags=re.M)
     text = re.sub(r"^.*data-figure=\"(wall_time|realtime_factor|mips|peak_rss)\".*\n", "", text, flags=re.M)
