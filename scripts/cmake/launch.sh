@@ -25,7 +25,9 @@ for argument in "$@"; do
   esac
   last=$argument
 done
-mapfile -t files < <(sed -e '1s/^[^:]*://' -e 's/\\$//' "$dependencies" | tr -s ' ' '\n' | grep .)
+# A blank in a name is written as a backslash and a blank.
+mapfile -t files < <(sed -e '1s/^[^:]*://' -e 's/\\$//' -e 's/\\ /\x01/g' "$dependencies" |
+  tr -s ' ' '\n' | tr '\001' ' ' | grep .)
 {
   echo "${*//"$source"/}"
   cat "${files[@]}"

@@ -106,7 +106,9 @@ def plain(text, out):
     text = re.sub(r'<p class="note">The simulator.s source was modified: [^<]*</p>', "", text)
     text = re.sub(r"\b20\d\d-\d\d-\d\d(T| )\d\d:\d\d(:\d\d)?Z?", "DATE", text)
     text = re.sub(r"^host .*\n( {8}.*\n)*", "host ...\n", text, flags=re.M)
-    text = re.sub(r"^.*data-figure=\"(wall_time|realtime_factor|mips|peak_rss)\".*\n", "", text, flags=re.M)
+    of_host = "wall_time|realtime_factor|mips|peak_rss|host_instructions"
+    text = re.sub(rf"^.*data-figure=\"({of_host})\".*\n", "", text, flags=re.M)
+    text = re.sub(r"^(t\.db: .* of commit \w+).*", r"\1 ...", text, flags=re.M)  # some hosts count instructions
     text = re.sub(r"^[0-9a-f]{16},", "POINT,", text, flags=re.M)
     text = re.sub(r"^(\[\d+\] .*: )[0-9.]+ s(; .*)?$", r"\1...", text, flags=re.M)
     return re.sub(r"[0-9.]+(x real time| million instructions a second| s on the host)", r"...\1", text)
