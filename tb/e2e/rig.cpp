@@ -24,8 +24,16 @@ oracle::Frame crop(const video::Picture& p, unsigned x, unsigned y, unsigned wid
   return f;
 }
 
-Rig::Rig(std::string elf)
-    : elf_(app::ElfImage::load(std::filesystem::path(FOVEA_FIRMWARE_DIR) / elf)) {
+namespace {
+
+std::filesystem::path program_path(const std::string& elf) {
+  return elf.find('/') == std::string::npos ? std::filesystem::path(FOVEA_FIRMWARE_DIR) / elf
+                                            : std::filesystem::path(elf);
+}
+
+}  // namespace
+
+Rig::Rig(std::string elf) : elf_(app::ElfImage::load(program_path(elf))) {
   params.declare(set_);
   set("camera.kind", "chart");
   set("ddr.check", "commands");

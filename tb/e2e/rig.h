@@ -32,7 +32,7 @@ struct FwState {
 
 class Rig {
  public:
-  /// @param elf a file in the firmware's build folder, or an absolute name
+  /// @param elf a file in the firmware's build folder, or a path with a slash in it
   explicit Rig(std::string elf = "fovea_firmware.elf");
   ~Rig();
   /// Like `-s key=value`; only before run().
