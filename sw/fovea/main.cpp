@@ -8,7 +8,7 @@
 #include <iostream>
 #include <systemc>
 
-#include "sw/fovea/cli.h"
+#include "sw/fovea/cli/cli.h"
 
 namespace {
 

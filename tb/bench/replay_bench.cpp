@@ -2,7 +2,7 @@
 // memory rows opened per request, shows how much work the controller had. Not a test.
 #include <benchmark/benchmark.h>
 
-#include "sw/fovea/replay_path.h"
+#include "sw/fovea/replay/replay_path.h"
 #include "tb/bench/synthetic_trace.h"
 
 namespace fovea::app {

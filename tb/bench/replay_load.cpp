@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "sw/fovea/replay_path.h"
+#include "sw/fovea/replay/replay_path.h"
 #include "tb/bench/synthetic_trace.h"
 
 int main(int argc, char** argv) {

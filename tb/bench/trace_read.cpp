@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "sw/fovea/open_trace.h"
+#include "sw/fovea/replay/open_trace.h"
 
 int main(int argc, char** argv) {
   using namespace fovea;

@@ -6,7 +6,7 @@
 #include <systemc>
 
 #include "model/engine/backends.h"
-#include "sw/fovea/cli.h"
+#include "sw/fovea/cli/cli.h"
 
 int sc_main(int argc, char** argv) {
   using namespace fovea::app;

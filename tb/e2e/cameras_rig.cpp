@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <sstream>
 
-#include "sw/fovea/calibration.h"
-#include "sw/fovea/experiment.h"
-#include "sw/fovea/loader.h"
-#include "sw/fovea/parameter_page.h"
+#include "sw/fovea/board/loader.h"
+#include "sw/fovea/board/parameter_page.h"
+#include "sw/fovea/config/calibration.h"
+#include "sw/fovea/config/experiment.h"
 #include "tb/e2e/geometry.h"
 #include "tb/e2e/rig.h"
 

@@ -7,8 +7,8 @@
 #include <systemc>
 
 #include "model/board/board_params.h"
-#include "sw/fovea/loader.h"
-#include "sw/fovea/parameter_page.h"
+#include "sw/fovea/board/loader.h"
+#include "sw/fovea/board/parameter_page.h"
 #include "sw/lens/lens.h"
 
 namespace fovea::e2e {

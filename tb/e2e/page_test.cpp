@@ -6,8 +6,8 @@
 #include <functional>
 #include <systemc>
 
-#include "sw/fovea/clock_setting.h"
-#include "sw/fovea/parameter_page.h"
+#include "sw/fovea/board/parameter_page.h"
+#include "sw/fovea/config/clock_setting.h"
 #include "sw/lens/lens.h"
 #include "tb/e2e/in_child.h"
 #include "tb/e2e/rig.h"

@@ -5,8 +5,8 @@
 
 #include "model/board/board.h"
 #include "model/cpu/core/debug.h"
-#include "sw/fovea/board_debug.h"
-#include "sw/fovea/elf_image.h"
+#include "sw/fovea/board/board_debug.h"
+#include "sw/fovea/program/elf_image.h"
 
 namespace fovea::e2e {
 

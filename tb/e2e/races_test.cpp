@@ -10,7 +10,7 @@
 #include <systemc>
 #include <vector>
 
-#include "sw/fovea/board_console.h"
+#include "sw/fovea/board/board_console.h"
 #include "tb/e2e/cameras_rig.h"
 #include "tb/e2e/interrupt_races.h"
 #include "tb/e2e/rig.h"

@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "model/video/core/bt656.h"
-#include "sw/fovea/experiment.h"
-#include "sw/fovea/loader.h"
-#include "sw/fovea/parameter_page.h"
+#include "sw/fovea/board/loader.h"
+#include "sw/fovea/board/parameter_page.h"
+#include "sw/fovea/config/experiment.h"
 #include "tb/e2e/geometry.h"
 
 namespace fovea::e2e {

@@ -7,7 +7,7 @@
 
 #include "model/board/board.h"
 #include "model/common/host_time_slicer.h"
-#include "sw/fovea/elf_image.h"
+#include "sw/fovea/program/elf_image.h"
 #include "tb/oracle/frame_compare.h"
 #include "tb/oracle/lens_oracle.h"
 

@@ -18,9 +18,9 @@
 #include "model/video/scene/line_score.h"
 #include "model/video/scene/picture_quality.h"
 #include "model/video/scene/plan_score.h"
-#include "sw/fovea/ffmpeg.h"
-#include "sw/fovea/outputs.h"
-#include "sw/fovea/simulation.h"
+#include "sw/fovea/files/ffmpeg.h"
+#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/results/outputs.h"
 
 namespace fovea::e2e {
 namespace {

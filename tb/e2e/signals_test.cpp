@@ -6,7 +6,7 @@
 #include <set>
 #include <systemc>
 
-#include "sw/fovea/board_console.h"
+#include "sw/fovea/board/board_console.h"
 #include "tb/e2e/cameras_rig.h"
 #include "tb/e2e/fault_counts.h"
 

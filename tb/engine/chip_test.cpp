@@ -7,7 +7,7 @@
 #include "model/board/board.h"
 #include "model/common/host_time_slicer.h"
 #include "model/engine/remap_engine.h"
-#include "sw/fovea/loader.h"
+#include "sw/fovea/board/loader.h"
 #include "tb/soc/reach.h"
 
 namespace fovea::engine {

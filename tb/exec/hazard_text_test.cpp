@@ -1,5 +1,5 @@
 // The sentence about a coherency hazard of each kind: who, where, and both times where both are known.
-#include "sw/fovea/hazard_report.h"
+#include "sw/fovea/probes/hazard_report.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include "model/board/board_params.h"
 #include "model/soc/placement.h"
-#include "sw/fovea/board_debug.h"
-#include "sw/fovea/exec_board.h"
+#include "sw/fovea/board/board_debug.h"
+#include "sw/fovea/exec/exec_board.h"
 #include "tb/soc/reach.h"
 
 namespace fovea::app {

@@ -4,7 +4,7 @@
 #include <deque>
 #include <random>
 
-#include "sw/fovea/gdb_masters.h"
+#include "sw/fovea/debug/gdb_masters.h"
 #include "tb/dram/path.h"
 
 namespace fovea::app {

@@ -1,5 +1,5 @@
 // The log of register accesses: names from the declarations, pattern, ring, warnings.
-#include "sw/fovea/register_log.h"
+#include "sw/fovea/tools/register_log.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "model/board/clock_presets.h"
 #include "register_recorder.h"
-#include "sw/fovea/clock_setting.h"
+#include "sw/fovea/config/clock_setting.h"
 
 extern "C" {
 #include "sw/firmware/boot/boot.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "sw/fovea/regression/blame.h"
+#include "sw/fovea/compare/blame.h"
 #include "tb/regression/run_maker.h"
 
 namespace fovea::regression {

@@ -1,7 +1,7 @@
 // The difference of two profiles: sums, blame. Expected amounts are counted by hand from the rows of run_maker.h.
-#include "sw/fovea/regression/blame.h"
+#include "sw/fovea/compare/blame.h"
 
-#include "sw/fovea/regression/compare.h"
+#include "sw/fovea/compare/compare.h"
 #include "tb/regression/blame_bench.h"
 
 namespace fovea::regression {

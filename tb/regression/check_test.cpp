@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "sw/fovea/regression/compare.h"
+#include "sw/fovea/compare/compare.h"
 #include "sw/fovea/regression/first_baseline.h"
 #include "tb/regression/run_maker.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/cli.h"
+#include "sw/fovea/cli/cli.h"
 #include "tb/regression/run_maker.h"
 
 namespace fovea::regression {

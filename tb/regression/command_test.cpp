@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "sw/fovea/regression/compare.h"
+#include "sw/fovea/compare/compare.h"
 #include "sw/fovea/regression/trend.h"
 #include "tb/regression/command_fixture.h"
 

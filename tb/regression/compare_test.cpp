@@ -1,5 +1,5 @@
 // `fovea compare`: what stands first, and what is not said.
-#include "sw/fovea/regression/compare.h"
+#include "sw/fovea/compare/compare.h"
 
 #include <nlohmann/json.hpp>
 

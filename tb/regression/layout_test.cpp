@@ -1,6 +1,6 @@
 // Moved code: what of a difference comes from the same code at other addresses. Expected amounts are counted by hand
 // from the rows of run_maker.h.
-#include "sw/fovea/regression/compare.h"
+#include "sw/fovea/compare/compare.h"
 #include "tb/regression/blame_bench.h"
 
 namespace fovea::regression {

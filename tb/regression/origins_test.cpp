@@ -1,11 +1,11 @@
 // Where a change of clocks comes from: callers, inlined functions, moved code, polling loops, other names, the parts of
 // a run. Expected amounts are counted by hand from the rows.
-#include "sw/fovea/regression/origins.h"
+#include "sw/fovea/compare/origins.h"
 
-#include "sw/fovea/regression/blame.h"
+#include "sw/fovea/compare/blame.h"
+#include "sw/fovea/compare/compare.h"
+#include "sw/fovea/compare/matching.h"
 #include "sw/fovea/regression/check_blame.h"
-#include "sw/fovea/regression/compare.h"
-#include "sw/fovea/regression/matching.h"
 #include "tb/regression/run_maker.h"
 
 namespace fovea::regression {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/regression/run_figures.h"
+#include "sw/fovea/results/run_figures.h"
 #include "tb/unit/support.h"
 
 namespace fovea::regression {

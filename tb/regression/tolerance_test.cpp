@@ -1,5 +1,5 @@
 // Limits of tolerances: each at n and beyond, both directions, absolute and relative.
-#include "sw/fovea/regression/tolerance.h"
+#include "sw/fovea/compare/tolerance.h"
 
 #include <cmath>
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <sstream>
 
-#include "sw/fovea/command_trace.h"
+#include "sw/fovea/tools/command_trace.h"
 #include "tb/dram/bench.h"
 #include "tb/replay/played.h"
 #include "tb/replay/support.h"

@@ -9,7 +9,7 @@
 #include "model/common/check.h"
 #include "model/trace/core/foreign_trace.h"
 #include "model/trace/core/text_trace.h"
-#include "sw/fovea/trace_writers.h"
+#include "sw/fovea/replay/trace_writers.h"
 
 namespace fovea::replay {
 namespace {

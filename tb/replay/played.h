@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "model/trace/core/text_trace.h"
-#include "sw/fovea/replay_path.h"
+#include "sw/fovea/replay/replay_path.h"
 
 namespace fovea::replay {
 

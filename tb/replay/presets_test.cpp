@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "model/trace/core/text_trace.h"
-#include "sw/fovea/ddr_presets.h"
-#include "sw/fovea/outputs.h"
-#include "sw/fovea/replay_clocks.h"
-#include "sw/fovea/replay_path.h"
+#include "sw/fovea/replay/ddr_presets.h"
+#include "sw/fovea/replay/replay_clocks.h"
+#include "sw/fovea/replay/replay_path.h"
+#include "sw/fovea/results/outputs.h"
 #include "tb/replay/support.h"
 
 namespace fovea::replay {

@@ -14,8 +14,8 @@
 #include <systemc>
 
 #include "model/trace/core/trace_file.h"
-#include "sw/fovea/bus_trace_run.h"
-#include "sw/fovea/replay_path.h"
+#include "sw/fovea/probes/bus_trace_run.h"
+#include "sw/fovea/replay/replay_path.h"
 #include "tb/e2e/in_child.h"
 #include "tb/e2e/rig.h"
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sw/fovea/replay_slaves.h"
+#include "sw/fovea/replay/replay_slaves.h"
 
 namespace fovea::replay {
 namespace {

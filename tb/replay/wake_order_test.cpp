@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "sw/fovea/wake_order.h"
+#include "sw/fovea/replay/wake_order.h"
 #include "tb/replay/played.h"
 #include "tb/replay/support.h"
 

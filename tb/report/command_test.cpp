@@ -1,5 +1,5 @@
 // `fovea report` and `fovea run --report` as they are typed.
-#include "sw/fovea/cli.h"
+#include "sw/fovea/cli/cli.h"
 #include "tb/report/folder.h"
 #include "tb/unit/fake_board.h"
 

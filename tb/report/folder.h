@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/outputs.h"
-#include "sw/fovea/png.h"
-#include "sw/fovea/provenance.h"
+#include "sw/fovea/files/png.h"
+#include "sw/fovea/results/outputs.h"
+#include "sw/fovea/results/provenance.h"
 #include "tb/unit/support.h"
 
 namespace fovea::test {

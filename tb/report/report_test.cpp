@@ -7,10 +7,10 @@
 #include <regex>
 #include <set>
 
-#include "sw/fovea/results/csv.h"
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/page.h"
 #include "sw/fovea/report/pictures.h"
+#include "sw/fovea/results/csv.h"
 #include "tb/report/folder.h"
 #include "tb/unit/png_file.h"
 

@@ -7,8 +7,8 @@
 
 #include "model/board/board.h"
 #include "model/engine/remap_engine.h"
-#include "sw/fovea/board_debug.h"
-#include "sw/fovea/loader.h"
+#include "sw/fovea/board/board_debug.h"
+#include "sw/fovea/board/loader.h"
 #include "tb/soc/reach.h"
 
 namespace fovea::soc {

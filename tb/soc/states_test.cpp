@@ -8,7 +8,7 @@
 #include "model/board/board.h"
 #include "model/common/host_time_slicer.h"
 #include "model/periph/psc.h"
-#include "sw/fovea/loader.h"
+#include "sw/fovea/board/loader.h"
 #include "tb/soc/states.h"
 
 namespace fovea::soc {

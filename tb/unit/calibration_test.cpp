@@ -1,5 +1,5 @@
-// sw/fovea/calibration.h: OpenCV's files, and the keys that they set.
-#include "sw/fovea/calibration.h"
+// sw/fovea/config/calibration.h: OpenCV's files, and the keys that they set.
+#include "sw/fovea/config/calibration.h"
 
 #include "tb/unit/support.h"
 

@@ -1,6 +1,6 @@
-// sw/fovea/cli.h with a fake board: files, exit statuses, messages; and how the real program reacts
+// sw/fovea/cli/cli.h with a fake board: files, exit statuses, messages; and how the real program reacts
 // to signals and a full disk.
-#include "sw/fovea/cli.h"
+#include "sw/fovea/cli/cli.h"
 
 #include <signal.h>
 #include <sys/resource.h>
@@ -14,9 +14,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "sw/fovea/cli_help.h"
-#include "sw/fovea/png.h"
-#include "sw/fovea/provenance.h"
+#include "sw/fovea/cli/cli_help.h"
+#include "sw/fovea/explain/wrapped.h"
+#include "sw/fovea/files/png.h"
+#include "sw/fovea/results/provenance.h"
 #include "tb/unit/fake_board.h"
 #include "tb/unit/support.h"
 

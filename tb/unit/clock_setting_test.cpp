@@ -1,6 +1,6 @@
 // What the PLLs can make of the crystal: the rules of the chip, limits at n and n + 1, and the
 // nearest clocks.
-#include "sw/fovea/clock_setting.h"
+#include "sw/fovea/config/clock_setting.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,8 +10,8 @@
 #include <memory>
 #include <utility>
 
-#include "sw/fovea/output_file.h"
-#include "sw/fovea/run_dir.h"
+#include "sw/fovea/files/output_file.h"
+#include "sw/fovea/results/run_dir.h"
 #include "tb/unit/support.h"
 
 namespace {

@@ -1,9 +1,9 @@
 // Programs for processors other than an ARM926EJ-S are refused because of their ELF attributes.
-#include "sw/fovea/elf_target.h"
+#include "sw/fovea/program/elf_target.h"
 
 #include <initializer_list>
 
-#include "sw/fovea/elf_image.h"
+#include "sw/fovea/program/elf_image.h"
 #include "tb/unit/support.h"
 
 namespace fovea::app {

@@ -1,7 +1,7 @@
-// sw/fovea/elf_image.h with programs built by the cross compiler.
+// sw/fovea/program/elf_image.h with programs built by the cross compiler.
 #include <fstream>
 
-#include "sw/fovea/elf_image.h"
+#include "sw/fovea/program/elf_image.h"
 #include "tb/unit/support.h"
 
 namespace fovea::app {

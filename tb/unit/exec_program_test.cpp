@@ -1,5 +1,5 @@
 // The memory map of a program, and files that are not programs.
-#include "sw/fovea/exec_program.h"
+#include "sw/fovea/program/exec_program.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "model/common/check.h"
-#include "sw/fovea/cli_exec.h"
+#include "sw/fovea/cli/cli_exec.h"
 
 namespace fovea::app {
 namespace {

@@ -1,5 +1,5 @@
-// sw/fovea/experiment.h: the YAML file, its errors of one line, and the order of precedence.
-#include "sw/fovea/experiment.h"
+// sw/fovea/config/experiment.h: the YAML file, its errors of one line, and the order of precedence.
+#include "sw/fovea/config/experiment.h"
 
 #include <sys/stat.h>
 

@@ -9,9 +9,9 @@
 #include <thread>
 #include <vector>
 
-#include "sw/fovea/ffmpeg.h"
-#include "sw/fovea/output_file.h"
-#include "sw/fovea/simulation.h"
+#include "sw/fovea/files/ffmpeg.h"
+#include "sw/fovea/files/output_file.h"
+#include "sw/fovea/machine/simulation.h"
 
 namespace fovea::test {
 

@@ -1,5 +1,5 @@
 // Links main.cpp with the fake board, which cannot run other programs.
-#include "sw/fovea/executor.h"
+#include "sw/fovea/machine/executor.h"
 #include "tb/unit/fake_board.h"
 
 namespace fovea::app {

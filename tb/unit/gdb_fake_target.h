@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/gdb_server.h"
+#include "sw/fovea/debug/gdb_server.h"
 
 namespace fovea::app::test {
 

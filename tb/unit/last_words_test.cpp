@@ -1,5 +1,5 @@
 // What a command says at its end.
-#include "sw/fovea/last_words.h"
+#include "sw/fovea/explain/last_words.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// sw/fovea/png.h and ffmpeg.h: round trips of pictures, and one-line errors for damaged files.
+// sw/fovea/files/png.h and ffmpeg.h: round trips of pictures, and one-line errors for damaged files.
 #include <signal.h>
 #include <sys/resource.h>
 
@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <thread>
 
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/ffmpeg.h"
-#include "sw/fovea/png.h"
+#include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/ffmpeg.h"
+#include "sw/fovea/files/png.h"
 #include "tb/unit/png_file.h"
 #include "tb/unit/support.h"
 

@@ -1,12 +1,12 @@
-// sw/fovea/outputs.h: contents of the text files of a run, byte by byte where tools depend on them.
-#include "sw/fovea/last_words.h"
-#include "sw/fovea/outputs.h"
+// sw/fovea/results/outputs.h: contents of the text files of a run, byte by byte where tools depend on them.
+#include "sw/fovea/explain/last_words.h"
+#include "sw/fovea/results/outputs.h"
 
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "sw/fovea/progress.h"
+#include "sw/fovea/machine/progress.h"
 #include "tb/unit/support.h"
 
 namespace fovea::app {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sw/fovea/png.h"
+#include "sw/fovea/files/png.h"
 
 namespace fovea::test {
 

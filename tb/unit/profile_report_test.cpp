@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <set>
 
-#include "sw/fovea/code_places.h"
-#include "sw/fovea/frame_parts.h"
-#include "sw/fovea/profile_report.h"
+#include "sw/fovea/program/code_places.h"
+#include "sw/fovea/tools/frame_parts.h"
+#include "sw/fovea/tools/profile_report.h"
 #include "tb/unit/support.h"
 
 namespace fovea::app {

@@ -11,7 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "sw/fovea/cli.h"
+#include "sw/fovea/cli/cli.h"
 #include "tb/unit/fake_board.h"
 #include "tb/unit/support.h"
 

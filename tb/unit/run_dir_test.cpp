@@ -1,5 +1,5 @@
-// sw/fovea/run_dir.h and checked_file.h: no result is lost, no foreign file is removed.
-#include "sw/fovea/run_dir.h"
+// sw/fovea/results/run_dir.h and checked_file.h: no result is lost, no foreign file is removed.
+#include "sw/fovea/results/run_dir.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -10,7 +10,7 @@
 #include <atomic>
 #include <thread>
 
-#include "sw/fovea/output_file.h"
+#include "sw/fovea/files/output_file.h"
 #include "tb/unit/support.h"
 
 namespace fovea::app {

@@ -1,11 +1,11 @@
 // The syntax of end conditions, dialogues and limits.
-#include "sw/fovea/run_until.h"
+#include "sw/fovea/config/run_until.h"
 
 #include <gmock/gmock.h>
 
 #include "model/common/check.h"
-#include "sw/fovea/dialogue.h"
-#include "sw/fovea/run_limits.h"
+#include "sw/fovea/console/dialogue.h"
+#include "sw/fovea/files/run_limits.h"
 
 namespace fovea::app {
 namespace {

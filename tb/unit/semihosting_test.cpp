@@ -1,5 +1,5 @@
 // Semihosting calls with a fake machine: flat memory and two registers.
-#include "sw/fovea/semihosting.h"
+#include "sw/fovea/console/semihosting.h"
 
 #include <errno.h>
 #include <gtest/gtest.h>

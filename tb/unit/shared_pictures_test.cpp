@@ -1,11 +1,11 @@
-// sw/fovea/shared_pictures.h: whose pictures cameras without one show.
-#include "sw/fovea/shared_pictures.h"
+// sw/fovea/config/shared_pictures.h: whose pictures cameras without one show.
+#include "sw/fovea/config/shared_pictures.h"
 
 #include <fmt/format.h>
 
 #include <optional>
 
-#include "sw/fovea/effective.h"
+#include "sw/fovea/machine/effective.h"
 #include "tb/unit/support.h"
 
 namespace fovea::app {

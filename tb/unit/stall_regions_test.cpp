@@ -1,5 +1,5 @@
 // Region names of a program's addresses, and the table of its stalls.
-#include "sw/fovea/stall_regions.h"
+#include "sw/fovea/tools/stall_regions.h"
 
 #include <map>
 

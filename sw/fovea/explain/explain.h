@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sw/fovea/outputs.h"
+#include "sw/fovea/results/outputs.h"
 
 namespace fovea::explain {
 

@@ -8,7 +8,7 @@
 
 #include "model/common/masters.h"
 #include "sw/fovea/explain/words.h"
-#include "sw/fovea/sleep.h"
+#include "sw/fovea/files/sleep.h"
 
 namespace fovea::explain {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "model/common/masters.h"
 #include "model/cpu/core/stalls.h"
-#include "sw/fovea/sleep.h"
+#include "sw/fovea/files/sleep.h"
 
 namespace fovea::explain {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "sw/fovea/outputs.h"
+#include "sw/fovea/results/outputs.h"
 
 namespace fovea::limits {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "model/common/masters.h"
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/limits/figure_names.h"
 
 namespace fovea::limits {

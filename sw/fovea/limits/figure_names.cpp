@@ -6,7 +6,7 @@
 #include <array>
 
 #include "model/common/nearest.h"
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/files/checked_file.h"
 
 namespace fovea::limits {
 namespace {

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/safe_json.h"
+#include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/safe_json.h"
 #include "sw/fovea/limits/figure_names.h"
 
 namespace fovea::limits {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/files/checked_file.h"
 
 namespace fovea::limits {
 namespace {

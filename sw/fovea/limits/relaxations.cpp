@@ -10,8 +10,8 @@
 #include "model/board/clock_presets.h"
 #include "model/common/check.h"
 #include "model/common/masters.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/clock_setting.h"
+#include "sw/fovea/config/clock_setting.h"
+#include "sw/fovea/files/checked_file.h"
 
 namespace fovea::limits {
 namespace {

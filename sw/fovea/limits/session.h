@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/cli.h"
-#include "sw/fovea/effective.h"
 #include "sw/fovea/limits/bisection.h"
 #include "sw/fovea/limits/judge.h"
+#include "sw/fovea/machine/command.h"
+#include "sw/fovea/machine/effective.h"
 #include "sw/fovea/points/runner.h"
 
 namespace fovea::limits {

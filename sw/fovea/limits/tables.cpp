@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "sw/fovea/limits/answers.h"
-#include "sw/fovea/outputs.h"
+#include "sw/fovea/results/outputs.h"
 
 namespace fovea::limits {
 namespace {

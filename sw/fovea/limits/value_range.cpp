@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/files/checked_file.h"
 
 namespace fovea::limits {
 namespace {

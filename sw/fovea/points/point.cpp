@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/sha256.h"
 #include "sw/fovea/results/stored_run.h"
-#include "sw/fovea/sha256.h"
 
 namespace fovea::points {
 

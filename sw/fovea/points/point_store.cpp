@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/output_file.h"
-#include "sw/fovea/output_folder.h"
-#include "sw/fovea/safe_json.h"
+#include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/output_file.h"
+#include "sw/fovea/files/output_folder.h"
+#include "sw/fovea/files/safe_json.h"
 
 namespace fovea::points {
 namespace {

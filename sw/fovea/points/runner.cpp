@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/files/checked_file.h"
 
 namespace fovea::points {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/outputs.h"
-#include "sw/fovea/safe_yaml.h"
+#include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/safe_yaml.h"
+#include "sw/fovea/results/outputs.h"
 
 namespace fovea::regression {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/output_folder.h"
-#include "sw/fovea/regression/run_figures.h"
-#include "sw/fovea/regression/tolerance.h"
+#include "sw/fovea/compare/tolerance.h"
+#include "sw/fovea/files/output_folder.h"
+#include "sw/fovea/results/run_figures.h"
 
 namespace fovea::regression {
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/regression/check.h"
 
 namespace fovea::regression {

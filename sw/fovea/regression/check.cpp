@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/compare/compare.h"
+#include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/regression/check_blame.h"
-#include "sw/fovea/regression/compare.h"
 
 namespace fovea::regression {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "sw/fovea/compare/blame.h"
 #include "sw/fovea/regression/baseline.h"
-#include "sw/fovea/regression/blame.h"
 
 namespace fovea::regression {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "sw/fovea/regression/blame.h"
+#include "sw/fovea/compare/blame.h"
 #include "sw/fovea/regression/check.h"
 
 namespace fovea::regression {

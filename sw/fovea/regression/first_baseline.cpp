@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/outputs.h"
+#include "sw/fovea/compare/compare.h"
+#include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/regression/baseline.h"
-#include "sw/fovea/regression/compare.h"
+#include "sw/fovea/results/outputs.h"
 
 namespace fovea::regression {
 namespace {

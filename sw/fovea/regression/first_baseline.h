@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sw/fovea/regression/run_figures.h"
-#include "sw/fovea/regression/tolerance.h"
+#include "sw/fovea/compare/tolerance.h"
+#include "sw/fovea/results/run_figures.h"
 
 namespace fovea::regression {
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/compare/compare.h"
+#include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/regression/check.h"
-#include "sw/fovea/regression/compare.h"
 
 namespace fovea::regression {
 namespace {

@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/ffmpeg.h"
+#include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/ffmpeg.h"
 #include "sw/fovea/points/child.h"
 #include "sw/fovea/regression/first_baseline.h"
 

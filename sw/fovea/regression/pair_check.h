@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/cli.h"
+#include "sw/fovea/machine/command.h"
 #include "sw/fovea/regression/baseline.h"
 
 namespace fovea::regression {

@@ -6,11 +6,11 @@
 #include <charconv>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/regression/attribution.h"
+#include "sw/fovea/compare/attribution.h"
+#include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/sha256.h"
 #include "sw/fovea/regression/baseline.h"
 #include "sw/fovea/results/table_file.h"
-#include "sw/fovea/sha256.h"
 
 namespace fovea::regression {
 namespace {

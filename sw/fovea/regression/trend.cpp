@@ -7,8 +7,8 @@
 #include <set>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/safe_json.h"
+#include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/safe_json.h"
 
 namespace fovea::regression {
 namespace {

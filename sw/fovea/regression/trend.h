@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/regression/run_figures.h"
-#include "sw/fovea/regression/tolerance.h"
+#include "sw/fovea/compare/tolerance.h"
+#include "sw/fovea/results/run_figures.h"
 
 struct sqlite3;
 

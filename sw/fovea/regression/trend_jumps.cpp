@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/regression/blame.h"
-#include "sw/fovea/regression/compare.h"
+#include "sw/fovea/compare/blame.h"
+#include "sw/fovea/compare/compare.h"
+#include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/regression/trend.h"
 
 namespace fovea::regression {

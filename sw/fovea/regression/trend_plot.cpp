@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "model/common/check.h"
+#include "sw/fovea/files/xml.h"
 #include "sw/fovea/regression/trend.h"
-#include "sw/fovea/regression/xml.h"
 
 namespace fovea::regression {
 namespace {
@@ -27,7 +27,7 @@ struct Point {
 
 std::string mark(std::size_t series, double x, double y, const std::string& title) {
   const char* const colour = kColours[series % kColours.size()];
-  const std::string what = fmt::format("<title>{}</title>", xml_text(title));
+  const std::string what = fmt::format("<title>{}</title>", app::xml_text(title));
   switch (series % 3) {
     case 0:
       return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\">{}</circle>\n", x, y, colour, what);
@@ -43,7 +43,7 @@ std::string title_of(const std::string& figure, bool relative) {
   return fmt::format("{}{}",
                      figure == kHostInstructions
                          ? "host instructions of the simulator for each guest instruction"
-                         : xml_text(figure),
+                         : app::xml_text(figure),
                      relative ? ", change since the first commit" : "");
 }
 
@@ -111,7 +111,7 @@ class TrendPlot {
     double at = kLeft;
     for (std::size_t e = 0; e < experiments_.size(); ++e) {
       out += mark(e, at, 18, experiments_[e]);
-      out += fmt::format("<text x=\"{:.0f}\" y=\"22\">{}</text>\n", at + 10, xml_text(experiments_[e]));
+      out += fmt::format("<text x=\"{:.0f}\" y=\"22\">{}</text>\n", at + 10, app::xml_text(experiments_[e]));
       at += 30 + 7.5 * static_cast<double>(experiments_[e].size());
     }
     return out;
@@ -157,7 +157,7 @@ class TrendPlot {
     return fmt::format("<line x1=\"{0:.0f}\" x2=\"{1:.0f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#d0d0d0\"/>\n",
                        kLeft, kLeft + kPlot, y) +
            fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\" fill=\"#404040\">{}</text>\n",
-                       kLeft - 8, y + 4, xml_text(label));
+                       kLeft - 8, y + 4, app::xml_text(label));
   }
   template <class HeightOf>
   std::string curve(std::size_t experiment, const std::string& figure, HeightOf y_of) const {
@@ -194,7 +194,7 @@ class TrendPlot {
     for (std::size_t c = 0; c < commits_.size(); c += step)
       out += fmt::format("<text transform=\"translate({:.1f} {:.0f}) rotate(-45)\" text-anchor=\"end\" "
                          "fill=\"#404040\">{}</text>\n",
-                         x_of(c) + 4, base, xml_text(short_name(commits_[c])));
+                         x_of(c) + 4, base, app::xml_text(short_name(commits_[c])));
     return out;
   }
 

@@ -8,12 +8,12 @@
 #include <map>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
 #include "sw/fovea/explain/words.h"
-#include "sw/fovea/results/csv.h"
+#include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/results.h"
 #include "sw/fovea/report/sections.h"
+#include "sw/fovea/results/csv.h"
 
 namespace fovea::report {
 namespace {

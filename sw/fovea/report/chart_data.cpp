@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/cpu/core/stalls.h"
-#include "sw/fovea/profile_report.h"
+#include "sw/fovea/tools/profile_report.h"
 
 namespace fovea::report {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/files/checked_file.h"
 
 namespace fovea::report {
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/report/assets.h"
 #include "sw/fovea/report/chart_data.h"
 #include "sw/fovea/report/html.h"

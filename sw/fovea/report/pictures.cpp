@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/png.h"
+#include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/png.h"
 #include "sw/fovea/report/html.h"
 
 namespace fovea::report {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sw/fovea/files/rgb_image.h"
 #include "sw/fovea/report/results.h"
-#include "sw/fovea/rgb_image.h"
 
 namespace fovea::report {
 

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
-#include "sw/fovea/provenance.h"
+#include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/results/csv.h"
+#include "sw/fovea/results/provenance.h"
 
 namespace fovea::report {
 namespace {

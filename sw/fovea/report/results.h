@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "sw/fovea/outputs.h"
 #include "sw/fovea/report/binds.h"
+#include "sw/fovea/results/outputs.h"
 #include "sw/fovea/results/stored_run.h"
-#include "sw/fovea/slowest.h"
+#include "sw/fovea/tools/slowest.h"
 
 namespace fovea::report {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "sw/fovea/checked_file.h"
 #include "sw/fovea/explain/command.h"
+#include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/page.h"
 #include "sw/fovea/report/sections.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "model/common/check.h"
-#include "sw/fovea/checked_file.h"
+#include "sw/fovea/files/checked_file.h"
 
 namespace fovea::results {
 namespace {

@@ -1,0 +1,21 @@
+#include "sw/fovea/files/xml.h"
+
+#include "sw/fovea/files/checked_file.h"
+
+namespace fovea::app {
+
+std::string xml_text(std::string_view text) {
+  std::string out;
+  for (const char c : printable(text)) {
+    switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      default: out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,37 @@
+#include "sw/fovea/machine/row_files.h"
+
+namespace fovea::app {
+
+RowFiles::RowFiles(RunDir& dir)
+    : frames_(dir.create("frames.csv")), timeline_(dir.create("timeline.csv")) {
+  frames_->write(frames_csv_header());
+}
+
+void RowFiles::attach(RunRequest& request) {
+  request.frame_row = [this](const FrameRow& row) { frame(row); };
+  request.timeline_row = [this](std::span<const std::string> masters, const TimelineRow& row) {
+    timeline(masters, row);
+  };
+}
+
+void RowFiles::frame(const FrameRow& row) { frames_->write(frames_csv_line(row)); }
+
+void RowFiles::timeline(std::span<const std::string> masters, const TimelineRow& row) {
+  timeline_header(masters);
+  timeline_->write(timeline_csv_line(row, masters.size()));
+}
+
+void RowFiles::timeline_header(std::span<const std::string> masters) {
+  if (!has_header_) timeline_->write(timeline_csv_header(masters));
+  has_header_ = true;
+}
+
+void RowFiles::finish(const RunResult& result) {
+  for (const FrameRow& row : result.frames) frame(row);
+  timeline_header(result.timeline_masters);
+  for (const TimelineRow& row : result.timeline) timeline(result.timeline_masters, row);
+  frames_->close();
+  timeline_->close();
+}
+
+}  // namespace fovea::app

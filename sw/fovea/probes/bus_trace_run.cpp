@@ -1,0 +1,59 @@
+#include "sw/fovea/probes/bus_trace_run.h"
+
+#include <string>
+#include <string_view>
+
+#include "model/trace/core/text_trace.h"
+#include "model/trace/core/trace_file.h"
+#include "sw/fovea/replay/replay_params.h"
+
+namespace fovea::app {
+namespace {
+
+bool is_trace(std::string_view first_bytes) {
+  return trace::TraceFile::recognises(first_bytes) || trace::TextTrace::recognises(first_bytes);
+}
+
+}  // namespace
+
+BusTraceRun::BusTraceRun(const std::filesystem::path& file, const ParamSet& params,
+                         board::Board& board)
+    : file_(file, "--bus-trace", "a bus trace", is_trace),
+      params_(params),
+      board_(board),
+      recorder_(board.dm365.record_bus()),
+      pins_(board.dm365.gpio.observe_outputs([this](unsigned bank, std::uint32_t out, Picoseconds at) {
+        if (bank == PHASE_BANK) recorder_->mark(out, at);
+      })) {}
+
+void BusTraceRun::open() {
+  const trace::BusTap& tap = board_.dm365.tap;
+  core_ = tap.core();
+  scr_ = tap.scr();
+  ddr_ = tap.ddr();
+  refresh_ = board_.dm365.ddr.controller().interval_start(kernel_time());
+  recorder_->open(kernel_time(), core_.frequency, core_.start, scr_);
+  opened_ = true;
+}
+
+void BusTraceRun::close() {
+  const trace::BusTap& tap = board_.dm365.tap;
+  if (!(core_ == tap.core() && scr_ == tap.scr() && ddr_ == tap.ddr()))
+    Diagnostics::instance().not_modelled("a clock that changes inside a bus trace");
+  recorder_->close(kernel_time());
+  closed_ = true;
+}
+
+void BusTraceRun::finish() {
+  if (!opened_ || !closed_) return;
+  trace::TraceInfo info;
+  info.scr = scr_;
+  info.ddr = ddr_;
+  info.refresh = refresh_;
+  info.params = replay_keys(params_, board_.dm365.ddr.programmed(), scr_.frequency,
+                            ddr_.frequency);
+  recorder_->finish(std::move(info), [this](std::string_view bytes) { file_.write(bytes); });
+  file_.commit();
+}
+
+}  // namespace fovea::app

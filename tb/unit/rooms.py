@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""The folders of the host program are libraries: none includes a header of a folder whose library it does not link, no
+two need each other, and no source lies outside of them.
+Usage: rooms.py SOURCE"""
+import pathlib
+import re
+import sys
+
+MOST_SOURCES = 16
+TOP = {"CMakeLists.txt", "README.md", "main.cpp"}
+
+
+def calls(text, function):
+    """The arguments of each call of a CMake function."""
+    text = re.sub(r"#.*", "", text)
+    return [m.group(1).split() for m in re.finditer(rf"\b{function}\(([^)]*)\)", text)]
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]) / "sw/fovea"
+    problems = []
+    for entry in root.iterdir():
+        if entry.is_file() and entry.name not in TOP:
+            problems.append(f"{entry.name}: lies in no folder")
+
+    owner, links = {}, {}  # library: folder; folder: libraries
+    for listed in sorted(root.glob("*/CMakeLists.txt")):
+        folder, text = listed.parent.name, listed.read_text()
+        links[folder] = set()
+        sources = set()
+        for name, *files in calls(text, "fovea_library"):
+            owner[name] = folder
+            written = [f for f in files if f.endswith(".cpp")]
+            sources |= set(written)
+            if len(written) > MOST_SOURCES:
+                problems.append(f"{folder}: {name} has {len(written)} sources; allowed: {MOST_SOURCES}")
+        for _, *libraries in calls(text, "target_link_libraries"):
+            links[folder] |= set(libraries)
+        lost = {f.name for f in listed.parent.glob("*.cpp")} - sources
+        problems += [f"{folder}/{f}: is in no library" for f in sorted(lost)]
+    if len(links) < 15:
+        problems.append(f"{len(links)} folders found: this test looks in the wrong place")
+
+    below = {folder: {owner[l] for l in libraries if l in owner} - {folder} for folder, libraries in links.items()}
+
+    def reached(folder, seen):
+        for b in below[folder]:
+            if b not in seen:
+                seen.add(b)
+                reached(b, seen)
+        return seen
+
+    reach = {folder: reached(folder, set()) for folder in below}
+    problems += [f"{folder}: needs itself by way of {', '.join(sorted(below[folder]))}"
+                 for folder in sorted(reach) if folder in reach[folder]]
+    includes = 0
+    for path in sorted(root.glob("*/*")):
+        if path.suffix not in (".h", ".cpp"):
+            continue
+        folder = path.parent.name
+        for line in path.read_text().splitlines():
+            m = re.match(r'#include "sw/fovea/(\w+)/', line)
+            if not m:
+                continue
+            includes += 1
+            if m.group(1) != folder and m.group(1) not in reach[folder]:
+                problems.append(f"{folder}/{path.name}: includes a header of {m.group(1)}, which "
+                                f"{folder}/CMakeLists.txt does not link")
+    if includes < 300:
+        problems.append(f"{includes} includes found: this test looks in the wrong place")
+    for p in problems:
+        print(p)
+    print(f"{len(links)} folders, {includes} includes, {len(problems)} problems")
+    return 1 if problems else 0
+
+
+sys.exit(main())
