@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "sw/fovea/cli/cli_help.h"
+#include "sw/fovea/cli/help.h"
 #include "sw/fovea/explain/wrapped.h"
 #include "sw/fovea/files/png.h"
 #include "sw/fovea/results/provenance.h"

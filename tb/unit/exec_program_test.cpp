@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "model/common/check.h"
-#include "sw/fovea/cli/cli_exec.h"
+#include "sw/fovea/cli/exec_command.h"
 
 namespace fovea::app {
 namespace {

@@ -39,7 +39,7 @@ class Program:
         names = set(self.keys()) | set(self.figures()) | set(tests_of(source, build))
         # Of pictures that take seconds to make.
         for file in ("mosaic_score.cpp", "picture_score.cpp"):
-            names |= set(re.findall(r'"(quality\.\w+)"', (source / "sw/fovea" / file).read_text(encoding="utf-8")))
+            names |= set(re.findall(r'"(quality\.\w+)"', (source / "sw/fovea/board" / file).read_text(encoding="utf-8")))
         self.names = {plain(n) for n in names}
         for name in list(self.names):
             for at in re.finditer(r"\.", name):

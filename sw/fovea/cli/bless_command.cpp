@@ -9,7 +9,7 @@
 #include <ostream>
 
 #include "model/common/check.h"
-#include "sw/fovea/cli/regression_command.h"
+#include "sw/fovea/cli/command_row.h"
 #include "sw/fovea/compare/attribution.h"
 #include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/files/output_file.h"
@@ -22,6 +22,34 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace regression;
+
+struct BlessOptions {
+  std::string folder, against, why, tolerance;
+  std::vector<std::string> layouts;
+};
+
+CLI::App* add_options(CLI::App& app, BlessOptions& b) {
+  CLI::App* bless = app.add_subcommand("bless", "Put the figures of a run into a baseline, or begin one");
+  bless->add_option("dir", b.folder, "Folder of results")->required()->type_name("DIR");
+  bless->add_option("--against", b.against, "Baseline (YAML), required; a name that is not there makes a new one")
+      ->required()
+      ->type_name("FILE");
+  bless->add_option("--why", b.why, "Reason, required; kept in the baseline")->required()->type_name("TEXT");
+  bless->add_option("--tolerance", b.tolerance, "Of a new baseline: what its times and amounts may vary by; 0: nothing")
+      ->type_name("TEXT")
+      ->default_str(std::string(regression::kFirstTolerance));
+  bless
+      ->add_option("--layout", b.layouts,
+                   "Of a new baseline: results of the program linked in another order or at other addresses; may be "
+                   "repeated. Tolerances are then twice the largest deviation")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  bless->footer(
+      "Prints the change as a diff. Comments and order stay; analytic values and budgets are "
+      "never replaced (exit status 1 if one of them fails). The reference for blame, in the "
+      "folder that the baseline names, becomes this run's.");
+  return bless;
+}
 
 /// Why no reference may be put here; empty if one may.
 std::string obstacle(const fs::path& folder) {
@@ -109,14 +137,14 @@ Baseline read_back(const fs::path& file, const std::string& text, const RunFigur
   return now;
 }
 
-std::string first_text(const RegressionOptions::Bless& o, const RunFigures& run, const fs::path& file) {
+std::string first_text(const BlessOptions& o, const RunFigures& run, const fs::path& file) {
   FirstBaseline first{.run = &run, .reference = reference_name(file), .why = o.why};
   for (const auto& folder : o.layouts) first.layouts.push_back(read_run(folder));
   first.tolerance = parse_tolerance(o.tolerance.empty() ? kFirstTolerance : o.tolerance, "--tolerance");
   return new_baseline(first);
 }
 
-std::string next_text(const RegressionOptions::Bless& o, const RunFigures& run, const Baseline& baseline) {
+std::string next_text(const BlessOptions& o, const RunFigures& run, const Baseline& baseline) {
   if (!o.tolerance.empty() || !o.layouts.empty())
     throw UserError(fmt::format("{}: '{}' is there, and its tolerances are changed by hand; allowed: a new baseline",
                                 o.tolerance.empty() ? "--layout" : "--tolerance", one_line(o.against)));
@@ -154,7 +182,7 @@ void put_in_place(OutputFile& out, const Blessed& b, const std::map<std::string,
 
 /// One attempt, alone from reading to writing. @return nothing if the baseline was first given the hash of the
 /// reference that it has, so that these two belong together; then another attempt follows
-std::optional<Blessed> bless(const RegressionOptions::Bless& o, const RunFigures& run) {
+std::optional<Blessed> bless(const BlessOptions& o, const RunFigures& run) {
   const fs::path file = o.against;
   OutputFile out(file, "--against", "a baseline", is_baseline);
   Blessed b;
@@ -190,9 +218,7 @@ std::optional<Blessed> bless(const RegressionOptions::Bless& o, const RunFigures
   return b;
 }
 
-}  // namespace
-
-int command_bless(const RegressionOptions::Bless& o, const CliContext& context) {
+int bless_result(const BlessOptions& o, const CliContext& context) {
   if (o.why.find_first_not_of(" \t") == std::string::npos)
     throw UserError("--why '': say in a sentence why the figures may change");
   if (!o.tolerance.empty() && !o.layouts.empty())
@@ -212,6 +238,14 @@ int command_bless(const RegressionOptions::Bless& o, const CliContext& context) 
                                  kind_name(e.kind), f.words);
     }
   return failures ? kExitCheckFailed : kExitDone;
+}
+
+}  // namespace
+
+Command add_bless(CLI::App& app) {
+  const auto o = std::make_shared<BlessOptions>();
+  CLI::App* const c = add_options(app, *o);
+  return {c, [o](const Call& call) { return bless_result(*o, call.context); }};
 }
 
 }  // namespace fovea::app

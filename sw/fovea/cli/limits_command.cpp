@@ -1,4 +1,6 @@
-#include "sw/fovea/cli/limits_command.h"
+// `fovea limits`: how far an experiment can be stretched, and what binds.
+#include "sw/fovea/cli/command_row.h"
+#include "sw/fovea/cli/shared_options.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,6 +21,20 @@ namespace fovea::limits {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct LimitsOptions {
+  std::string experiment;
+  std::vector<std::string> sets;
+  std::string out_dir;
+  unsigned jobs = 0;  ///< 0: one for each processor
+  std::string find, binds;
+  std::vector<std::string> over, require, relax, ports, priorities;
+  bool load = false, retry_failed = false, larger_is_better = false;
+  unsigned probes = 2;
+  unsigned load_bytes = 64, load_slots = 4;
+  std::string load_kind = "read", load_pattern = "sequential";
+  double load_step = 20, load_most = 1400;
+};
 
 constexpr const char* kFooter =
     "Conditions: no frame is dropped, none is shown again unless the decoder has to find a camera's syncs, no capture "
@@ -141,16 +157,12 @@ int status_of(const std::vector<std::unique_ptr<Study>>& studies) {
   return worst ? worst : found ? 0 : 1;
 }
 
-}  // namespace
-
-void add_limits_command(CLI::App& app, LimitsOptions& o) {
+CLI::App* add_options(CLI::App& app, LimitsOptions& o) {
   CLI::App* c = app.add_subcommand(
       "limits", "Run an experiment over settings (--over), search how far it can be stretched, find out what binds");
   c->footer(kFooter);
   c->add_option("experiment", o.experiment, "Experiment file (YAML)")->required()->type_name("FILE");
-  c->add_option("-s,--set", o.sets, "Set a parameter; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  app::add_set_option(*c, o.sets);
   c->add_option("--find", o.find, "Largest or smallest value of a numeric key that meets the conditions, in steps of "
                                   "1, of a 64th of the range, or of S with KEY=LOW..HIGH:S")
       ->type_name("KEY=LOW..HIGH");
@@ -199,9 +211,12 @@ void add_limits_command(CLI::App& app, LimitsOptions& o) {
       ->check(CLI::Range(1u, 1024u))
       ->default_str("processors");
   c->add_flag("--retry-failed", o.retry_failed, "Run points again that an earlier call found to fail");
+  return c;
 }
 
-int command_limits(const LimitsOptions& o, const app::CliContext& context) {
+/// @return the exit status: 0 found, 1 not met at any value, 2 a run had wrong input, 3 the guest failed
+/// where a figure was asked for, 4 a run met a defect; 128 + the signal if stopped
+int find_limits(const LimitsOptions& o, const app::CliContext& context) {
   // Everything wrong with the question that shows without a run is said before a folder is made.
   const auto plain = app::effective_run(context.make_simulation, o.experiment, o.sets);
   const Question question = question_of(o, plain->params);
@@ -258,4 +273,15 @@ int command_limits(const LimitsOptions& o, const app::CliContext& context) {
   return status_of(studies);
 }
 
+}  // namespace
 }  // namespace fovea::limits
+
+namespace fovea::app {
+
+Command add_limits(CLI::App& app) {
+  const auto o = std::make_shared<limits::LimitsOptions>();
+  CLI::App* const c = limits::add_options(app, *o);
+  return {c, [o](const Call& call) { return limits::find_limits(*o, call.context); }, keys_of_run};
+}
+
+}  // namespace fovea::app

@@ -1,8 +1,8 @@
-#include "sw/fovea/cli/replay_command.h"
-
+// `fovea replay`: a bus trace played on crossbar and SDRAM.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <future>
@@ -10,6 +10,8 @@
 #include <set>
 
 #include "model/trace/core/bounds.h"
+#include "sw/fovea/cli/command_row.h"
+#include "sw/fovea/cli/shared_options.h"
 #include "sw/fovea/config/experiment.h"
 #include "sw/fovea/config/run_until.h"
 #include "sw/fovea/explain/last_words.h"
@@ -28,6 +30,18 @@ namespace {
 
 namespace fs = std::filesystem;
 using Wall = std::chrono::steady_clock;
+
+struct ReplayOptions {
+  std::string trace;
+  std::vector<std::string> sets;
+  std::string out_dir;
+  bool out_given = false;
+  bool memory_only = false;
+  std::string command_trace;  ///< file; empty: none
+  std::string around;         ///< a time, for requests.csv; empty: none
+  bool wrap = false;  ///< addresses beyond ddr.part are taken modulo its size
+  std::vector<std::string> without;  ///< labels of masters whose requests are left out
+};
 
 /// What of the command line does nothing because there is no crossbar.
 std::vector<std::string> without_crossbar(const std::vector<std::string>& sets) {
@@ -130,10 +144,28 @@ bool replay_to_end(ReplayPath& path, Picoseconds start, const CliContext& contex
   return true;
 }
 
-}  // namespace
+CLI::App* add_options(CLI::App& app, ReplayOptions& replay) {
+  CLI::App* c =
+      app.add_subcommand("replay", "Play a bus trace on crossbar and SDRAM, without the core");
+  c->add_option("trace", replay.trace, "File of 'run --bus-trace', or text ('# dramtrace 1')")
+      ->required()
+      ->type_name("FILE");
+  add_set_option(*c, replay.sets);
+  c->add_option("-o,--out", replay.out_dir, "Folder for the results")
+      ->type_name("DIR")
+      ->default_str("out/TRACE");
+  add_command_trace_option(*c, replay.command_trace);
+  add_around_option(*c, replay.around);
+  c->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
+  c->add_flag("--wrap", replay.wrap,
+              "Take addresses beyond the memory (ddr.part) modulo its size");
+  c->add_option("--without", replay.without, "Leave out the requests of this master; may be repeated")
+      ->type_name("MASTER")
+      ->allow_extra_args(false);
+  return c;
+}
 
-int command_replay(const ReplayOptions& options, const std::vector<std::string>& args,
-                   const CliContext& context) {
+int replay(const ReplayOptions& options, const std::vector<std::string>& args, const CliContext& context) {
   const auto started = Wall::now();
   const WarningScope warnings(context.err, false, true);
   const OpenTrace trace = open_own_trace(options.trace);
@@ -205,6 +237,24 @@ int command_replay(const ReplayOptions& options, const std::vector<std::string>&
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << "fovea: stopped before the end; the figures cover what was replayed\n";
   return signal ? 128 + signal : kExitGuestFailed;
+}
+
+}  // namespace
+
+Command add_replay(CLI::App& app) {
+  const auto o = std::make_shared<ReplayOptions>();
+  CLI::App* const c = add_options(app, *o);
+  return {c,
+          [o, c](const Call& call) {
+            o->out_given = c->count("--out") > 0;
+            return replay(*o, call.args, call.context);
+          },
+          [](const CliContext&) {
+            ReplayParams replay;
+            ParamSet params;
+            replay.declare(params);
+            return keys_of(params);
+          }};
 }
 
 }  // namespace fovea::app

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <ostream>
 
+#include "sw/fovea/cli/command_row.h"
 #include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/files/output_file.h"
 #include "sw/fovea/report/page.h"
@@ -15,6 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct ReportOptions {
+  std::vector<std::string> folders;
+  std::string out, limits;
+  bool text = false, partial = false, across_versions = false;
+};
+
 constexpr const char* kName = "report.html";
 
 /// Beside the results of a single run; several have no common folder.
@@ -22,9 +29,7 @@ fs::path default_place(const ReportOptions& options) {
   return options.folders.size() == 1 ? fs::path(options.folders.front()) / kName : fs::path(kName);
 }
 
-}  // namespace
-
-void add_report_command(CLI::App& app, ReportOptions& o) {
+CLI::App* add_options(CLI::App& app, ReportOptions& o) {
   CLI::App* c = app.add_subcommand("report", "Make a page of HTML about a run, or compare several");
   c->add_option("folders", o.folders, "Folder of results; several are compared with the first")
       ->required()
@@ -38,9 +43,10 @@ void add_report_command(CLI::App& app, ReportOptions& o) {
   c->add_flag("--partial", o.partial,
               "Accept partial results: of a run that was stopped or failed");
   c->add_flag("--across-versions", o.across_versions, "Accept results of another version of fovea");
+  return c;
 }
 
-int command_report(const ReportOptions& options, const CliContext& context) {
+int make_report(const ReportOptions& options, const CliContext& context) {
   if (options.folders.size() > report::kMaxRuns)
     throw UserError(fmt::format("report: {} folders; allowed: 1 to {}", options.folders.size(),
                                 report::kMaxRuns));
@@ -63,7 +69,15 @@ int command_report(const ReportOptions& options, const CliContext& context) {
   return kExitDone;
 }
 
-void add_report(RunDir& dir, const std::string& name) {
+}  // namespace
+
+Command add_report(CLI::App& app) {
+  const auto o = std::make_shared<ReportOptions>();
+  CLI::App* const c = add_options(app, *o);
+  return {c, [o](const Call& call) { return make_report(*o, call.context); }};
+}
+
+void write_report(RunDir& dir, const std::string& name) {
   std::vector<report::Results> runs{report::load_results(dir.folder(), {.partial = true})};
   runs.front().name = name;
   dir.write(kName, report::report_page(runs));

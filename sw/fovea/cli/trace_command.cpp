@@ -1,5 +1,4 @@
-#include "sw/fovea/cli/trace_command.h"
-
+// `fovea trace convert` and `fovea trace info`: bus traces between formats.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,6 +17,7 @@
 #include "model/trace/core/bounds.h"
 #include "model/trace/core/text_trace.h"
 #include "model/trace/core/trace_file.h"
+#include "sw/fovea/cli/command_row.h"
 #include "sw/fovea/config/experiment.h"
 #include "sw/fovea/files/ffmpeg.h"
 #include "sw/fovea/files/output_file.h"
@@ -28,6 +28,16 @@
 
 namespace fovea::app {
 namespace {
+
+struct TraceOptions {
+  std::string in, out;
+  std::string from, to;  ///< formats; `from` empty: by the file's content
+  std::string clock;     ///< frequency or period of the cycles
+  std::optional<std::string> master;
+  std::optional<unsigned> bytes, window;
+  std::optional<std::string> size;
+  bool wrap = false;
+};
 
 constexpr unsigned kDefaultBytes = 64;
 
@@ -448,9 +458,7 @@ void print_info(const TraceOptions& options, std::ostream& out) {
   }
 }
 
-}  // namespace
-
-void add_trace_command(CLI::App& app, TraceOptions& o) {
+CLI::App* add_options(CLI::App& app, TraceOptions& o) {
   CLI::App* c = app.add_subcommand("trace", "Convert bus traces, or show what one holds");
   c->require_subcommand(1);
   CLI::App* convert = c->add_subcommand(
@@ -487,16 +495,23 @@ void add_trace_command(CLI::App& app, TraceOptions& o) {
   convert->add_flag("--wrap", o.wrap, "Take addresses beyond the memory modulo its size");
   CLI::App* info = c->add_subcommand("info", "Show format, length and masters of a trace");
   info->add_option("in", o.in, "The trace")->required()->type_name("FILE");
+  return c;
 }
 
-int command_trace(const CLI::App& trace, const TraceOptions& options, const CliContext& context) {
-  if (trace.get_subcommands().front()->get_name() == "info") {
-    print_info(options, context.out);
-    context.out << std::flush;
-  } else {
-    Conversion(options, context).run();
-  }
-  return kExitDone;
+}  // namespace
+
+Command add_trace(CLI::App& app) {
+  const auto o = std::make_shared<TraceOptions>();
+  CLI::App* const c = add_options(app, *o);
+  return {c, [o, c](const Call& call) {
+            if (c->get_subcommands().front()->get_name() == "info") {
+              print_info(*o, call.context.out);
+              call.context.out << std::flush;
+            } else {
+              Conversion(*o, call.context).run();
+            }
+            return int{kExitDone};
+          }};
 }
 
 }  // namespace fovea::app

@@ -1,13 +1,14 @@
 // `fovea trend`: lines are added, jumps are named, and a picture is drawn.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <optional>
 #include <ostream>
 
 #include "model/common/check.h"
-#include "sw/fovea/cli/regression_command.h"
+#include "sw/fovea/cli/command_row.h"
 #include "sw/fovea/compare/compare.h"
 #include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/files/child_process.h"
@@ -19,6 +20,41 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace regression;
+
+struct TrendOptions {
+  std::vector<std::string> folders, figures;
+  std::string database, commit, plot, experiment, tolerance = "1%";
+  bool replace = false;
+  double host_instructions = 0;
+};
+
+CLI::App* add_options(CLI::App& app, TrendOptions& t) {
+  CLI::App* trend = app.add_subcommand("trend", "Keep the figures of each commit, and plot them");
+  trend->add_option("dir", t.folders, "Folders of results to add")->type_name("DIR");
+  trend->add_option("--database", t.database, "SQLite file, required; made if it is not there")
+      ->required()
+      ->type_name("FILE");
+  trend->add_option("--commit", t.commit, "Name of the line")
+      ->type_name("TEXT")
+      ->default_str("that of the git repository of the current folder");
+  trend->add_flag("--replace", t.replace, "Also replace a line of this commit that is of another program");
+  trend->add_option("--tolerance", t.tolerance, "A larger change from one commit to the next is a jump, and is blamed")
+      ->type_name("TEXT")
+      ->default_str("1%");
+  trend
+      ->add_option("--host-instructions", t.host_instructions,
+                   "The simulator's host instructions for each guest instruction, instead of the run's own figure; "
+                   "scripts/host-instructions counts them where the host cannot")
+      ->type_name("NUMBER")
+      ->check(CLI::PositiveNumber);
+  trend->add_option("--plot", t.plot, "Write a picture of the figures over the commits (SVG)")->type_name("FILE");
+  trend->add_option("--figure", t.figures, "Figure to plot; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->default_str("headlines");
+  trend->add_option("--experiment", t.experiment, "Plot only this experiment")->type_name("NAME");
+  return trend;
+}
 
 /// Figures that a plot shows if none are asked for.
 const std::vector<std::string> kPlotted = {"frame.remap_time.mean", "frame.latency.mean", "frame.rate",
@@ -48,7 +84,7 @@ std::string current_commit(const CliContext& context) {
   return out.erase(out.find_last_not_of('\n') + 1);
 }
 
-std::string commit_of(const RegressionOptions::Trend& o, const CliContext& context) {
+std::string commit_of(const TrendOptions& o, const CliContext& context) {
   if (!o.commit.empty()) return o.commit;
   std::string out = current_commit(context);
   if (out.empty())
@@ -78,9 +114,7 @@ std::string jump_words(const std::vector<TrendLine>& lines, const TrendLine& add
   return out.empty() ? "" : out + fmt::format("  blamed: {}\n", blame_of_jump(*before, *after));
 }
 
-}  // namespace
-
-int command_trend(const RegressionOptions::Trend& o, const CliContext& context) {
+int add_to_trend(const TrendOptions& o, const CliContext& context) {
   if (o.folders.empty() && o.plot.empty())
     throw UserError("nothing to do; allowed: folders of results to add, --plot FILE, or both");
   if (o.database.empty()) throw UserError("--database '': a file name is needed");
@@ -119,6 +153,14 @@ int command_trend(const RegressionOptions::Trend& o, const CliContext& context) 
   }
   context.out << std::flush;
   return kExitDone;
+}
+
+}  // namespace
+
+Command add_trend(CLI::App& app) {
+  const auto o = std::make_shared<TrendOptions>();
+  CLI::App* const c = add_options(app, *o);
+  return {c, [o](const Call& call) { return add_to_trend(*o, call.context); }};
 }
 
 }  // namespace fovea::app

@@ -125,7 +125,7 @@ class OriginSearch {
     for (auto& [key, origin] : origins_) out.push_back(std::move(origin));
     join_moved(out);
     std::stable_sort(out.begin(), out.end(),
-                     [](const ClockOrigin& x, const ClockOrigin& y) { return std::abs(x.change) > std::abs(y.change); });
+                     [](const auto& x, const auto& y) { return std::abs(x.change) > std::abs(y.change); });
     return out;
   }
 

@@ -1,18 +1,18 @@
-#include "sw/fovea/cli/regression_command.h"
-
+// `fovea check`: a result against a baseline, or a program against an earlier one.
 #include <fmt/format.h>
 #include <sys/stat.h>
 
-#include <algorithm>
+#include <CLI/CLI.hpp>
 #include <array>
 #include <ctime>
 #include <memory>
 #include <ostream>
 
-#include "sw/fovea/compare/compare.h"
-#include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/cli/command_row.h"
+#include "sw/fovea/cli/shared_options.h"
 #include "sw/fovea/files/output_file.h"
 #include "sw/fovea/regression/check.h"
+#include "sw/fovea/regression/first_baseline.h"
 #include "sw/fovea/regression/pair_check.h"
 
 namespace fovea::app {
@@ -21,7 +21,46 @@ namespace {
 namespace fs = std::filesystem;
 using namespace regression;
 
-constexpr std::array<const char*, 4> kCommands = {"compare", "check", "bless", "trend"};
+struct CheckOptions {
+  std::vector<std::string> what, sets;  ///< a folder, or an experiment and two programs
+  std::string against, junit, markdown, out, tolerance;
+  bool all = false, across_versions = false;
+};
+
+CLI::App* add_options(CLI::App& app, CheckOptions& k) {
+  CLI::App* check = app.add_subcommand(
+      "check", "Compare a result with a baseline, or a program with an earlier one, and blame what is worse");
+  check
+      ->add_option("what", k.what,
+                   "Folder of results; or an experiment and two programs, of which the second is held "
+                   "against the first")
+      ->required()
+      ->expected(1, 3)
+      ->type_name("DIR | EXPERIMENT A B");
+  check->add_option("--against", k.against, "Baseline (YAML) for a folder; 'fovea bless' makes one")->type_name("FILE");
+  check->add_option("-s,--set", k.sets, "With two programs: set a parameter of both runs; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  check->add_option("-o,--out", k.out, "With two programs: keep their results as a/ and b/ in this folder")
+      ->type_name("DIR");
+  check->add_option("--tolerance", k.tolerance, "With two programs: what times and amounts may vary by")
+      ->type_name("TEXT")
+      ->default_str(std::string(regression::kFirstTolerance));
+  check
+      ->add_option("--markdown", k.markdown,
+                   "Also write five lines for a merge request: figure, before, after, who, why; - prints them instead "
+                   "of the report")
+      ->type_name("FILE");
+  check->add_option("--junit", k.junit, "Also write the result as JUnit XML")->type_name("FILE");
+  check->add_flag("--all", k.all, "Also list figures that pass");
+  check->add_flag("--across-versions", k.across_versions, kAcrossVersions);
+  check->footer(
+      "Exit status: 0 passed; 1 a figure is missing or worse than its tolerance allows; 2 wrong "
+      "input. A figure of a baseline has: value; unit; tolerance (1%, 2, '1% or 2'; none: the same "
+      "number); worse (higher, lower, both): the direction that fails; kind: exact (from a run, "
+      "replaced by bless), analytic (calculated) or budget (a limit); reason.");
+  return check;
+}
 
 /// Date and time of a file in UTC, as JUnit XML wants it.
 std::string time_of(const fs::path& file) {
@@ -34,7 +73,7 @@ std::string time_of(const fs::path& file) {
 }
 
 /// What does not go together. @throws UserError
-void check_words(const RegressionOptions::Check& o) {
+void check_words(const CheckOptions& o) {
   if (o.what.size() == 2)
     throw UserError("check: two words; allowed: DIR --against FILE, or EXPERIMENT A B with two programs");
   if (o.what.size() == 1) {
@@ -46,22 +85,6 @@ void check_words(const RegressionOptions::Check& o) {
   }
 }
 
-int compare(const RegressionOptions& options, const CliContext& context) {
-  const auto& o = options.compare;
-  if (o.csv && o.json) throw UserError("--csv and --json exclude each other; choose one");
-  const Tolerance tolerance = parse_tolerance(o.tolerance, "--tolerance");
-  const RunFigures a = read_run(o.a), b = read_run(o.b);
-  if (!o.across_versions) refuse_other_simulator(a, b);
-  const Comparison c = compare_runs(a, b, tolerance, o.only);
-  if (c.compared == 0)
-    throw UserError(fmt::format("no figure matches --only '{}'; stats.json lists all", one_line(o.only)));
-  context.out << (o.csv    ? comparison_csv(c)
-                  : o.json ? comparison_json(c)
-                           : comparison_text(c, tolerance, o.all))
-              << std::flush;
-  return c.changes.empty() ? kExitDone : kExitCheckFailed;
-}
-
 /// A file of `check` beside its report; it is opened before anything is run.
 std::unique_ptr<OutputFile> output(const std::string& name, const char* option, const char* kind, const char* part) {
   if (name.empty()) return nullptr;
@@ -69,8 +92,7 @@ std::unique_ptr<OutputFile> output(const std::string& name, const char* option, 
                                       [part](std::string_view text) { return text.find(part) != text.npos; });
 }
 
-int check(const RegressionOptions& options, const CliContext& context) {
-  const auto& o = options.check;
+int check(const CheckOptions& o, const CliContext& context) {
   const bool pair = o.what.size() == 3;
   check_words(o);
   const bool shown = o.markdown == "-";  // in the place of the report
@@ -97,16 +119,10 @@ int check(const RegressionOptions& options, const CliContext& context) {
 
 }  // namespace
 
-bool is_regression_command(const std::string& name) {
-  return std::find(kCommands.begin(), kCommands.end(), name) != kCommands.end();
-}
-
-int command_regression(const std::string& name, const RegressionOptions& options,
-                       const CliContext& context) {
-  if (name == "compare") return compare(options, context);
-  if (name == "check") return check(options, context);
-  if (name == "bless") return command_bless(options.bless, context);
-  return command_trend(options.trend, context);
+Command add_check(CLI::App& app) {
+  const auto o = std::make_shared<CheckOptions>();
+  CLI::App* const c = add_options(app, *o);
+  return {c, [o](const Call& call) { return check(*o, call.context); }};
 }
 
 }  // namespace fovea::app

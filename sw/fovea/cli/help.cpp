@@ -1,4 +1,4 @@
-#include "sw/fovea/cli/cli_help.h"
+#include "sw/fovea/cli/help.h"
 
 #include <fmt/format.h>
 

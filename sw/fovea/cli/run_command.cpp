@@ -1,9 +1,9 @@
-#include "sw/fovea/cli/cli_run.h"
-
+// `fovea run`: options, and the run of one experiment into a folder of results.
 #include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -11,8 +11,10 @@
 #include <ostream>
 #include <string_view>
 
-#include "sw/fovea/cli/cli_exec.h"
+#include "sw/fovea/cli/command_row.h"
+#include "sw/fovea/cli/perfetto_options.h"
 #include "sw/fovea/cli/report_command.h"
+#include "sw/fovea/cli/shared_options.h"
 #include "sw/fovea/config/experiment.h"
 #include "sw/fovea/config/run_until.h"
 #include "sw/fovea/console/host_console.h"
@@ -33,6 +35,24 @@ namespace fovea::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct RunOptions {
+  std::string experiment;
+  std::vector<std::string> sets;
+  std::string out_dir;
+  bool out_given = false;
+  std::string sync = "default";
+  bool strict = false, hazards = false, profile = false;
+  bool no_frames = false;
+  bool mp4 = false;
+  std::string bus_trace, command_trace, waves, around;
+  std::string gdb;
+  RegisterLogRequest registers;
+  PerfettoOptions perfetto;
+  LimitOptions limits;
+  bool console = false;
+  bool report = false;
+};
 
 void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& meter,
                    const std::vector<std::string>& args, std::vector<StatRow>& host, bool log) {
@@ -210,7 +230,7 @@ std::vector<StatRow> write_run(RunDir& dir, RunResult& result, ProgressMeter& me
   write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
   if (options.report)
     side_output("the report", result.lost, [&] {
-      add_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment);
+      write_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment);
     });
   say_note(dir.commit(result.complete && result.guest_failure.empty()), context);
   say_lost(result.lost, context);
@@ -231,9 +251,55 @@ void take_options(RunRequest& request, const RunOptions& options, const CliConte
   request.notes = &context.err;
 }
 
-}  // namespace
+/// Adds an option for the name of a file, which is not empty.
+void add_file_option(CLI::App& command, const char* name, std::string& file, const char* help) {
+  command.add_option(name, file, help)
+      ->type_name("FILE")
+      ->each([name](const std::string& s) {
+        if (s.empty()) throw UserError(std::string(name) + " '': a file name is needed");
+      });
+}
 
-int command_run(const RunOptions& options, const std::vector<std::string>& args, const CliContext& context) {
+CLI::App* add_options(CLI::App& app, RunOptions& run) {
+  CLI::App* c = app.add_subcommand("run", "Simulate an experiment");
+  c->add_option("experiment", run.experiment, "Experiment file (YAML)")
+      ->required()
+      ->type_name("FILE");
+  add_set_option(*c, run.sets);
+  c->add_option("-o,--out", run.out_dir, "Folder for the results")
+      ->type_name("DIR")
+      ->default_str("out/EXPERIMENT");
+  c->add_option("--sync", run.sync,
+                "strict: slow reference mode, same results; default: fast mode")
+      ->type_name("MODE")
+      ->check(CLI::IsMember({"default", "strict"}))
+      ->default_str("default");
+  c->add_flag("--strict", run.strict,
+              "Stop with an error when the firmware uses a feature that is not modelled, or a parameter that "
+              "is set has no effect");
+  add_hazards_option(*c, run.hazards);
+  add_profile_option(*c, run.profile);
+  c->add_flag("--no-frames", run.no_frames, "Write no pictures");
+  c->add_flag("--mp4", run.mp4, "Also write the displayed frames as display.mp4");
+  add_file_option(*c, "--bus-trace", run.bus_trace,
+                  "Write all requests to the SDRAM in the measured window to this file");
+  add_file_option(*c, "--waves", run.waves,
+                  "Write the waveforms of the RTL remap engine (engine = rtl, both, both_tlm) to this FST file; "
+                  "the keys waves.* choose which part");
+  add_command_trace_option(*c, run.command_trace);
+  add_around_option(*c, run.around);
+  add_perfetto_options(*c, run.perfetto);
+  c->add_option("--gdb", run.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
+      ->type_name(":PORT");
+  add_register_log_options(*c, run.registers);
+  add_limit_options(*c, run.limits);
+  c->add_flag("--report", run.report, "Also make report.html: see 'fovea report'");
+  c->add_flag("--console", run.console,
+              "Show UART0 on the output and type the input on it; see run.until");
+  return c;
+}
+
+int run(const RunOptions& options, const std::vector<std::string>& args, const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
   check_register_log(options.registers, options.gdb);
   const auto simulation = context.make_simulation();
@@ -288,6 +354,26 @@ int command_run(const RunOptions& options, const std::vector<std::string>& args,
   // With --console the output stream is reserved for UART0.
   report_run(options, result, host, dir, options.console ? context.err : context.out);
   return run_status(options, result, console.stream && console.stream->quit(), context);
+}
+
+}  // namespace
+
+std::vector<std::string> keys_of_run(const CliContext& context) {
+  ParamSet params;
+  const auto simulation = context.make_simulation();
+  simulation->declare(params);
+  return keys_of(params);
+}
+
+Command add_run(CLI::App& app) {
+  const auto o = std::make_shared<RunOptions>();
+  CLI::App* const c = add_options(app, *o);
+  return {c,
+          [o, c](const Call& call) {
+            o->out_given = c->count("--out") > 0;
+            return run(*o, call.args, call.context);
+          },
+          keys_of_run};
 }
 
 }  // namespace fovea::app

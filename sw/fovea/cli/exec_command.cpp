@@ -1,4 +1,4 @@
-#include "sw/fovea/cli/cli_exec.h"
+#include "sw/fovea/cli/exec_command.h"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -10,6 +10,7 @@
 #include <optional>
 #include <ostream>
 
+#include "sw/fovea/cli/command_row.h"
 #include "sw/fovea/config/experiment.h"
 #include "sw/fovea/console/console.h"
 #include "sw/fovea/console/host_console.h"
@@ -92,42 +93,6 @@ ExecProgram program_of(const ExecOptions& o) {
 
 }  // namespace
 
-void add_register_log_options(CLI::App& command, RegisterLogRequest& request) {
-  command
-      .add_option("--log-registers", request.pattern,
-                  "Log accesses to registers whose BLOCK.REGISTER matches this regular expression")
-      ->type_name("REGEX")
-      ->check(CLI::Validator(
-          [](const std::string& s) {
-            return s.empty() ? std::string("a regular expression is needed; '.' takes all") : "";
-          },
-          ""));
-  command
-      .add_option("--log-registers-kept", request.kept,
-                  "Keep the last N accesses; also of a log that GDB begins")
-      ->type_name("N")
-      ->check(CLI::Range(std::size_t{1}, kRegisterLogMost))
-      ->capture_default_str();
-}
-
-void add_hazards_option(CLI::App& command, bool& hazards) {
-  command.add_flag("--hazards", hazards,
-                   "Warn where the core and a DMA master see different memory, because a line of the "
-                   "D-cache is stale or dirty; with --strict that is an error at the end");
-}
-
-void add_profile_option(CLI::App& command, bool& profile) {
-  command.add_flag("--profile", profile,
-                   "Say where each clock of the core went, by function, line, cause and culprit: "
-                   "profile.csv, .folded, .callgrind and .txt; changes no other result");
-}
-
-void check_register_log(const RegisterLogRequest& request, const std::string& gdb) {
-  if (request.pattern.empty() && gdb.empty() && request.kept != RegisterLogRequest{}.kept)
-    throw UserError(
-        "--log-registers-kept: nothing is logged; allowed: with --log-registers or --gdb");
-}
-
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   CLI::App* c = app.add_subcommand("exec", "Run a program on core and memory, with semihosting");
   c->add_option("program", o.program, "ELF file, or a flat binary with --load and --entry")
@@ -145,9 +110,7 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
   c->add_flag("--console", o.console, "With --board: the input is typed on UART0");
   c->add_option("--root", o.root, "Folder of the program's files; without it there are none")
       ->type_name("DIR");
-  c->add_option("-s,--set", o.sets, "Set a parameter; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_set_option(*c, o.sets);
   c->add_option("-o,--out", o.out_dir,
                 "Folder for stats.json, stalls.csv, config.json and host.json")
       ->type_name("DIR");
@@ -288,10 +251,7 @@ int program_status(const ExecOptions& o, const ExecResult& result, bool lost, co
   return signal ? 128 + signal : kExitGuestFailed;
 }
 
-}  // namespace
-
-int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
-                 const CliContext& context) {
+int exec(const ExecOptions& o, const std::vector<std::string>& args, const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
   refuse_combinations(o);
   const auto executor = context.make_executor();
@@ -346,6 +306,21 @@ int command_exec(const ExecOptions& o, const std::vector<std::string>& args,
   if (dir) write_program_results(o, result, args, *dir, context);
   say_lost(result.lost, context);
   return program_status(o, result, lost, context);
+}
+
+}  // namespace
+
+Command add_exec(CLI::App& app) {
+  const auto o = std::make_shared<ExecOptions>();
+  CLI::App* const c = add_exec_command(app, *o);
+  return {c, [o](const Call& call) { return exec(*o, call.args, call.context); },
+          [](const CliContext& context) {
+            ParamSet params;
+            const auto executor = context.make_executor ? context.make_executor() : nullptr;
+            if (executor) executor->declare(params);
+            return keys_of(params);
+          },
+          [o, c](std::vector<std::string>& args) { o->arguments = take_program_arguments(*c, args); }};
 }
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-#include "sw/fovea/cli/cli_perfetto.h"
+#include "sw/fovea/cli/perfetto_options.h"
 
 #include <CLI/CLI.hpp>
 

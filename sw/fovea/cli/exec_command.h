@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/cli/cli_limits.h"
+#include "sw/fovea/cli/shared_options.h"
 #include "sw/fovea/machine/command.h"
 
 namespace CLI {
@@ -23,15 +23,6 @@ struct ExecOptions {
   bool board = false, console = false, hazards = false, profile = false;
 };
 
-/// Adds `--log-registers` and the option for its size, which `run` and `exec` share.
-void add_register_log_options(CLI::App& command, RegisterLogRequest& request);
-/// Adds `--hazards`, which `run` and `exec` share.
-void add_hazards_option(CLI::App& command, bool& hazards);
-/// Adds `--profile`, the same.
-void add_profile_option(CLI::App& command, bool& profile);
-/// @throws UserError if a size is given although nothing can start a log
-void check_register_log(const RegisterLogRequest& request, const std::string& gdb);
-
 /// Adds the subcommand, whose options are stored in `options`.
 CLI::App* add_exec_command(CLI::App& app, ExecOptions& options);
 
@@ -39,8 +30,5 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& options);
 /// them: all that follow the program and are not options of the subcommand, and all after `--`.
 std::vector<std::string> take_program_arguments(const CLI::App& exec,
                                                 std::vector<std::string>& args);
-
-int command_exec(const ExecOptions& options, const std::vector<std::string>& args,
-                 const CliContext& context);
 
 }  // namespace fovea::app
