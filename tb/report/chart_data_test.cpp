@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "model/common/masters.h"
+#include "model/cpu/core/stalls.h"
 #include "tb/report/folder.h"
 
 namespace fovea::report {
@@ -15,6 +19,32 @@ using test::HandMade;
 using test::TempDir;
 using test::two_frames;
 using ::testing::ElementsAre;
+
+// Which culprit is shown in which group is said here once more, by hand.
+TEST(WordsTest, EachCauseCulpritAndMasterHasItsWordsAndItsColour) {
+  const json words = words_json();
+  for (const cpu::CauseInfo& cause : cpu::kCauseTable) EXPECT_TRUE(words["causes"].contains(cause.name)) << cause.name;
+  EXPECT_EQ(words["causes"].size(), cpu::kCauses + 2);  // and of `issue` and `idle`
+  std::map<std::string, std::set<std::string>> members;
+  for (const auto& [culprit, group] : words["group_of"].items()) {
+    EXPECT_TRUE(words["groups"].contains(std::string(group))) << culprit;
+    members[group].insert(culprit);
+  }
+  using Names = std::set<std::string>;
+  EXPECT_EQ(members["way"], Names{"service"});
+  EXPECT_EQ(members["bridge"], Names{"bridge"});
+  EXPECT_EQ(members["rows"], (Names{"power_down", "refresh", "row_conflict", "row_miss", "turnaround"}));
+  EXPECT_EQ(members["video"], (Names{"vpbe", "vpfe"}));
+  EXPECT_EQ(members["itself"], (Names{"arm_d", "arm_i", "core", "own"}));
+  EXPECT_EQ(members["other"], (Names{"load", "not_known"}));
+  EXPECT_TRUE(members["copying"].contains("remap_engine") && members["copying"].contains("edma_tc3"));
+  std::map<unsigned, std::string> by_colour;
+  for (const MasterInfo& m : kMasters.rows) {
+    const unsigned colour = words["colours"].at(std::string(m.statistics));
+    const auto [at, first] = by_colour.emplace(colour, m.statistics);
+    EXPECT_TRUE(first || at->second == m.statistics) << m.statistics << " looks like " << at->second;
+  }
+}
 
 TEST(FramesTest, AreThoseOfTheFileUpToTwoThousand) {
   const TempDir dir;

@@ -187,9 +187,9 @@ TEST_F(ExplainTest, LargestWaitHasItsShareCulpritsAndRegions) {
              {"dcache", "x", "core", 30},
              {"interlock", "none", "core", 200}};
   EXPECT_EQ(text("largest_wait"),
-            "Largest wait: in 50 % of the clocks in which it is awake, the core waits for line "
-            "fills of the D-cache "
-            "(48 % of that on the unhindered way through crossbar and SDRAM controller and 40 % "
+            "Largest wait: in 50 % of the clocks in which it is awake, the core waits for D-cache "
+            "line fills "
+            "(48 % of that on its own way through crossbar and SDRAM controller and 40 % "
             "in the bridge "
             "between core and crossbar). By what is accessed: frame_in (48 %) and lut (46 %). It "
             "issues instructions "
@@ -214,14 +214,14 @@ TEST_F(ExplainTest, NamesTheFunctionAndItsWait) {
                 {"main", 750, {{"idle.capture", 400}, {"wait.dma", 100}, {"issue", 250}}}};
   EXPECT_EQ(text("function"),
             "The function remap takes 75 % of the core's awake clocks, and waits in 67 % of these "
-            "for line fills of the D-cache.");
+            "for D-cache line fills.");
 }
 
 TEST_F(ExplainTest, AFunctionsWaitIsNamedFromOnePercentOn) {
   functions_ = {{"f", 1000, {{"issue", 990}, {"dcache", 10}}}};
   EXPECT_EQ(text("function"),
-            "The function f takes 100 % of the core's awake clocks, and waits in 1.0 % of these for line fills of the "
-            "D-cache.");
+            "The function f takes 100 % of the core's awake clocks, and waits in 1.0 % of these for D-cache "
+            "line fills.");
   functions_ = {{"f", 1000, {{"issue", 991}, {"dcache", 9}}}};
   EXPECT_EQ(text("function"), "The function f takes 100 % of the core's awake clocks.");
 }
@@ -278,7 +278,7 @@ TEST_F(ExplainTest, DifferenceNamesRemapAndLargestCause) {
   EXPECT_EQ(found[0].text, "The remap of B takes 8.00 ms instead of the 10.0 ms of A: 20 % less.");
   EXPECT_EQ(found[1].text,
             "The largest difference in the core's clocks for each corrected frame: B spends 10 "
-            "thousand clocks more on waiting for line fills of the D-cache.");
+            "thousand clocks more on waiting for D-cache line fills.");
 }
 
 TEST_F(ExplainTest, EqualTimesOfInstructionsAreNoDifferenceHoweverLong) {
@@ -288,7 +288,7 @@ TEST_F(ExplainTest, EqualTimesOfInstructionsAreNoDifferenceHoweverLong) {
   set("cpu.stall.dcache", std::uint64_t{20'500});
   const auto found = explain_difference({.stats = before, .stalls = {}, .frames = {}}, "A", inputs(), "B");
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_NE(found[1].text.find("waiting for line fills of the D-cache"), std::string::npos) << found[1].text;
+  EXPECT_NE(found[1].text.find("waiting for D-cache line fills"), std::string::npos) << found[1].text;
 }
 
 // From a thousandth of the remap on, and from a thousand clocks of a frame on.
@@ -305,7 +305,7 @@ TEST_F(ExplainTest, SmallDifferencesAreNotMentioned) {
   EXPECT_EQ(found().size(), 1u);
   set("cpu.stall.dcache", std::uint64_t{2'500});
   ASSERT_EQ(found().size(), 2u);
-  EXPECT_THAT(found()[1].text, HasSubstr("B spends 1 thousand clocks more on waiting for line fills of the D-cache."));
+  EXPECT_THAT(found()[1].text, HasSubstr("B spends 1 thousand clocks more on waiting for D-cache line fills."));
 }
 
 TEST_F(ExplainTest, EqualRunsDoNotDiffer) {
@@ -315,7 +315,7 @@ TEST_F(ExplainTest, EqualRunsDoNotDiffer) {
 }
 
 TEST(WordsTest, SleepsSayForWhom) {
-  EXPECT_EQ(waits_or_sleeps_for("dcache"), "line fills of the D-cache");
+  EXPECT_EQ(waits_or_sleeps_for("dcache"), "D-cache line fills");
   EXPECT_EQ(waits_or_sleeps_for("idle.display"), "the display's interrupt, asleep");
   EXPECT_EQ(waits_or_sleeps_for("idle"), "an interrupt, asleep");
   EXPECT_EQ(waits_or_sleeps_for("idle.dma"), "the EDMA");

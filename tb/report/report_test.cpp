@@ -218,7 +218,7 @@ TEST(PageTest, FunctionsAreThoseOfTheFrames) {
                               "value=\"750\">750</data></td>"
                               "<td class=\"n\"><data value=\"0.5\">50 %</data></td><td "
                               "class=\"n\"><data value=\"250\">250</data>"
-                              "</td><td>line fills of the D-cache</td><td>remap.c:10</td></tr>"));
+                              "</td><td>D-cache line fills</td><td>remap.c:10</td></tr>"));
   EXPECT_THAT(page, Not(HasSubstr("<code>start</code>")));  // of the phase boot
 }
 
@@ -266,7 +266,7 @@ TEST(PageTest, TablesHaveTheirFiguresInTheirPlaces) {
   EXPECT_THAT(page, HasSubstr("data-figure=\"net\""));
   // Largest first.
   EXPECT_TRUE(in_order(page, {"<td>frame_in</td>", "<td>bridge</td>", "<td>vpbe</td>", "<td>row_miss</td>"}));
-  EXPECT_TRUE(in_order(page, {"<code>busy</code>", "line fills of the D-cache", "<code>small</code>"}));
+  EXPECT_TRUE(in_order(page, {"<code>busy</code>", "D-cache line fills", "<code>small</code>"}));
   EXPECT_THAT(page, HasSubstr("<data value=\"1200\">1,200</data>"));
 }
 

@@ -70,7 +70,7 @@ for r in rows("stalls.csv"):
     by_region[(r["cause"], r["region"])] = by_region.get((r["cause"], r["region"]), 0) + n
     others += n if r["culprit"].startswith(("edma", "vp", "remap_engine", "load")) else 0
 awake = sum(waits.values()) + stats["cpu.issue"]
-words = {"dcache": "line fills of the D-cache", "write_buffer": "room in the write buffer"}
+words = {"dcache": "D-cache line fills", "write_buffer": "room in the write buffer"}
 cause = max(waits, key=waits.get)
 if said := find(r"Largest wait: in ([\d.]+) % of the clocks in which it is awake, the core waits for (.*?) \("):
     close(said[1], 100 * waits[cause] / awake, "%", "largest wait")

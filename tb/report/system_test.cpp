@@ -122,7 +122,7 @@ TEST(SystemTest, TheSlowestRequestsHaveTheirStepsAndACommand) {
       text,
       HasSubstr(
           "Slowest read of arm_d (the core's data): 1.250 us at 80.153412 ms: 1.000 us while vpbe (the display) is "
-          "served, 0.225 us on the unhindered way through crossbar and SDRAM controller, 0.025 us in "
+          "served, 0.225 us on its own way through crossbar and SDRAM controller, 0.025 us in "
           "its bridge to the crossbar.\n"));
   EXPECT_THAT(text, HasSubstr("Slowest write of vpbe (the display): 0.008 us at 0.001000 ms"));
   EXPECT_THAT(page, HasSubstr("port bridge 24.7, controller vpbe 1000.0, return service 225.3"));

@@ -236,7 +236,7 @@ TEST(RunWordsTest, TheLargestWaitIsNamed) {
   };
   EXPECT_EQ(run_words(rows, {}),
             "waits   all reads of arm_d (the core's data) take 200 ms together: own way\n"
-            "        through crossbar and SDRAM 60 %, bridges 30 %\n");
+            "        through crossbar and SDRAM controller 60 %, bridges 30 %\n");
 }
 
 // 0.5 % is shown as 1, less as nothing. A transfer controller has its name, as there are four.

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "sw/fovea/files/sleep.h"
+#include "sw/fovea/results/sleep.h"
 
 namespace fovea::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sw/fovea/files/sleep.h"
+#include "sw/fovea/results/sleep.h"
 #include "sw/fovea/results/run_figures.h"
 
 namespace fovea::regression {

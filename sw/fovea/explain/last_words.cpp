@@ -14,25 +14,11 @@
 #include "model/cpu/core/stalls.h"
 #include "sw/fovea/explain/words.h"
 #include "sw/fovea/explain/wrapped.h"
-#include "sw/fovea/files/sleep.h"
+#include "sw/fovea/results/sleep.h"
+#include "sw/fovea/results/words.h"
 
 namespace fovea::app {
 namespace {
-
-/// What the core is stalled for, in the order of the causes.
-constexpr const char* kStallWords[] = {
-    "interlocks",
-    "waiting for I-cache line fills",
-    "waiting for D-cache line fills",
-    "waiting for room in the write buffer",
-    "waiting for uncached accesses",
-    "waiting for page walks",
-    "waiting for internal RAM",
-    "waiting for cache maintenance",
-    "waiting for the write buffer to drain",
-    "waiting for clock edges of the bus",
-};
-static_assert(std::size(kStallWords) == cpu::kCauses);
 
 std::optional<double> real(std::span<const StatRow> stats, std::string_view name) {
   const StatRow* row = find(stats, name);
@@ -67,8 +53,9 @@ Part wait_of_remaps(std::span<const StatRow> stats) {
 
 std::vector<Part> stalls(std::span<const StatRow> stats, const std::string& prefix) {
   std::vector<Part> out;
-  for (const cpu::CauseInfo& info : cpu::kCauseTable)
-    out.push_back({kStallWords[cpu::index(info.cause)], count(stats, prefix + "stall." + std::string(info.name))});
+  for (const results::CauseWords& w : results::cause_words())
+    out.push_back({fmt::format("waiting for {}", w.waits_for),
+                   count(stats, fmt::format("{}stall.{}", prefix, w.name))});
   return out;
 }
 
@@ -149,17 +136,7 @@ std::string master_words(std::string_view name) {
 }
 
 std::string culprit_words(const std::string& name) {
-  static const std::map<std::string, std::string> kWords = {{"bridge", "bridges"},
-                                                            {"service", "own way through crossbar and SDRAM"},
-                                                            {"not_known", "not known"},
-                                                            {"row_miss", "closed banks"},
-                                                            {"row_conflict", "row conflicts"},
-                                                            {"turnaround", "turning the data bus"},
-                                                            {"refresh", "refresh"},
-                                                            {"power_down", "waking the SDRAM"},
-                                                            {"own", "queued behind the same master"}};
-  const auto found = kWords.find(name);
-  if (found != kWords.end()) return found->second;
+  if (const auto* words = results::find_culprit(name)) return std::string(words->label);
   const std::string who = master_words(name);
   return "behind " + (who.empty() ? name : who);
 }
@@ -212,11 +189,10 @@ std::string slowest_lines(std::span<const SlowestRow> rows) {
         fmt::format("{:{}}{} of {}: {}", i == 0 ? "slowest" : "", kLabelWidth, r.direction, r.master, slowest_when(r));
     const char* separator = "; ";
     for (const auto& [culprit, time] : slowest_parts(r)) {
-      const bool master = !explain::master(culprit).empty();
-      const std::string words = culprit == "service" ? "own way"
-                                : culprit == "own"   ? "queue"
-                                : master             ? "behind " + culprit
-                                                     : culprit_words(culprit);
+      const auto* found = results::find_culprit(culprit);
+      const std::string words = found ? std::string(found->brief)
+                                : explain::master(culprit).empty() ? culprit_words(culprit)
+                                                                   : "behind " + culprit;
       const std::string part = fmt::format("{}{} {:.2f}", separator, words, static_cast<double>(time) * 1e-6);
       if (line.size() + part.size() > kLine) break;
       line += part;

@@ -7,8 +7,9 @@
 #include <array>
 
 #include "model/common/masters.h"
+#include "model/cpu/core/stalls.h"
 #include "sw/fovea/explain/words.h"
-#include "sw/fovea/files/sleep.h"
+#include "sw/fovea/results/sleep.h"
 
 namespace fovea::explain {
 namespace {
@@ -110,19 +111,21 @@ void find_latency_parts(const Run& run, std::vector<Finding>& out) {
 
 void find_mover(const Run& run, std::vector<Finding>& out) {
   struct Mover {
-    std::string_view event, port, who;
+    cpu::WakeEvent event;
+    std::string_view port;
   };
-  static constexpr std::array kMovers{Mover{"dma", "edma_tc", "the EDMA"},
-                                      Mover{"engine", "remap_engine", "the remap engine"}};
+  static constexpr std::array kMovers{Mover{cpu::WakeEvent::kDma, "edma_tc"},
+                                      Mover{cpu::WakeEvent::kEngine, "remap_engine"}};
   const double all = run.value_or_zero("cpu.remap.cycles"), asleep = run.value_or_zero("cpu.remap.idle");
   // Less is a rest that the core waits for at the end of its own work.
   if (asleep <= 0 || asleep < 0.05 * all) return;
   std::vector<std::string> names, evidence{"cpu.remap.idle", "cpu.remap.cycles"}, sentences;
   for (const Mover& m : kMovers) {
+    const cpu::WakeInfo& info = cpu::kWakeTable[static_cast<std::size_t>(m.event)];
     // The interrupts of others in the midst of a wait do not tell whom it is for.
-    const std::string figure = fmt::format("cpu.remap.idle.{}", m.event);
+    const std::string figure = fmt::format("cpu.remap.idle.{}", info.name);
     if (run.value_or_zero(figure) <= 0) continue;
-    names.emplace_back(m.who);
+    names.emplace_back(info.who);
     evidence.push_back(figure);
     const auto parts = run.waits_of(m.port);
     double whole = 0;
@@ -134,7 +137,7 @@ void find_mover(const Run& run, std::vector<Finding>& out) {
     // A load at these ports waits there too, and the figures do not tell its requests apart.
     if (largest.empty() || run.loaded(m.port)) continue;
     sentences.push_back(fmt::format(" The time of all requests that {} made to the SDRAM in the whole window: {}.",
-                                    m.who, listed(largest)));
+                                    info.who, listed(largest)));
     evidence.push_back(fmt::format("ddr.{}*.wait.*", m.port));
   }
   if (names.empty()) return;

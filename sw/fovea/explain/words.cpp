@@ -2,60 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
-#include <utility>
 
-#include "model/common/masters.h"
 #include "model/cpu/core/stalls.h"
-#include "sw/fovea/files/sleep.h"
+#include "sw/fovea/results/sleep.h"
+#include "sw/fovea/results/words.h"
 
 namespace fovea::explain {
-namespace {
-
-using Words = std::pair<std::string_view, std::string_view>;
-
-constexpr std::array kCauses{Words{"interlock", "results of earlier instructions (interlocks)"},
-                             Words{"icache", "line fills of the I-cache"},
-                             Words{"dcache", "line fills of the D-cache"},
-                             Words{"write_buffer", "room in the write buffer"},
-                             Words{"uncached", "accesses that no cache serves"},
-                             Words{"tlb", "page walks"},
-                             Words{"tcm", "the internal RAM"},
-                             Words{"cache_op", "cache maintenance"},
-                             Words{"drain", "the write buffer to drain"},
-                             Words{"bus_sync", "an edge of the bus clock"}};
-
-constexpr std::array kCulprits{Words{"bridge", "in the bridge between core and crossbar"},
-                               Words{"service", "on the unhindered way through crossbar and SDRAM controller"},
-                               Words{"not_known", "on what is not remembered"},
-                               Words{"core", "behind other accesses of the core itself"},
-                               Words{"own", "behind other accesses of the core itself"},
-                               Words{"row_miss", "on opening rows of closed banks"},
-                               Words{"row_conflict", "on closing one row and opening another"},
-                               Words{"refresh", "on refreshes"},
-                               Words{"turnaround", "on turning the data bus between reads and writes"},
-                               Words{"power_down", "on waking the SDRAM"}};
-
-template <std::size_t N>
-std::string_view look_up(const std::array<Words, N>& table, std::string_view key) {
-  for (const auto& [name, words] : table)
-    if (name == key) return words;
-  return {};
-}
-
-/// The row of a culprit that is a master, by the name of its port or by that in the statistics.
-const MasterInfo* master_row(std::string_view culprit) {
-  for (const MasterInfo& r : kMasters.rows)
-    if (r.name == culprit || r.statistics == culprit) return &r;
-  return nullptr;
-}
-
-}  // namespace
 
 std::string waits_for(std::string_view cause) {
-  const auto words = look_up(kCauses, cause);
-  return std::string(words.empty() ? cause : words);
+  for (const results::CauseWords& w : results::cause_words())
+    if (w.name == cause) return std::string(w.waits_for);
+  return std::string(cause);
 }
 
 std::string waits_or_sleeps_for(std::string_view cause) {
@@ -69,13 +27,10 @@ std::string waits_or_sleeps_for(std::string_view cause) {
   return who.empty() ? "an interrupt, asleep" : who + "'s interrupt, asleep";
 }
 
-std::string master(std::string_view culprit) {
-  const MasterInfo* row = master_row(culprit);
-  return row ? std::string(row->who) : "";
-}
+std::string master(std::string_view culprit) { return std::string(results::master_words(culprit)); }
 
 std::string spent(std::string_view culprit) {
-  if (const auto words = look_up(kCulprits, culprit); !words.empty()) return std::string(words);
+  if (const auto* words = results::find_culprit(culprit)) return std::string(words->spent);
   if (const auto who = master(culprit); !who.empty()) return "while " + who + " is served";
   return "in " + std::string(culprit);
 }
@@ -83,8 +38,8 @@ std::string spent(std::string_view culprit) {
 std::string spent_by_port(std::string_view culprit) {
   if (culprit == "own") return "behind other requests of its own";
   if (culprit == "bridge") return "in its bridge to the crossbar";
-  if (const MasterInfo* row = master_row(culprit); row && is_core(row->id)) return "while the core is served";
-  return spent(culprit);
+  const bool core = !results::find_culprit(culprit) && results::group_of(culprit) == results::Group::kItself;
+  return core ? "while the core is served" : spent(culprit);
 }
 
 std::string percent(double ratio) {

@@ -5,7 +5,7 @@
 
 namespace fovea::explain {
 
-/// What a stall cause waits for, to follow "waits for": "line fills of the D-cache".
+/// What a stall cause waits for, to follow "waits for": "D-cache line fills".
 std::string waits_for(std::string_view cause);
 /// The same for each cause of profile.csv but `issue`: also the sleeps, "the display's interrupt, asleep", "the EDMA".
 std::string waits_or_sleeps_for(std::string_view cause);

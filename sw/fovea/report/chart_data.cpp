@@ -5,7 +5,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "model/common/masters.h"
 #include "model/cpu/core/stalls.h"
+#include "sw/fovea/results/words.h"
 #include "sw/fovea/tools/profile_report.h"
 
 namespace fovea::report {
@@ -209,6 +211,23 @@ Json stack_tree(const std::vector<std::pair<std::string, std::uint64_t>>& stacks
     }
   }
   return node_json("all", root, root.clocks / kSmallest);
+}
+
+Json words_json() {
+  Json out{{"causes", {{"issue", "instructions issue"}, {"idle", "idle (waits for an interrupt)"}}}};
+  for (const results::CauseWords& w : results::cause_words()) out["causes"][std::string(w.name)] = w.label;
+  std::map<results::Group, std::string> keys;
+  for (const results::GroupWords& w : results::group_words()) {
+    keys[w.group] = w.key;
+    out["groups"][keys[w.group]] = w.words;
+    out["colours"][keys[w.group]] = w.colour;
+  }
+  for (const results::CulpritWords& w : results::culprit_words()) out["group_of"][std::string(w.name)] = keys[w.group];
+  for (const MasterInfo& m : kMasters.rows)
+    for (const std::string_view name : {m.name, m.statistics})
+      out["group_of"][std::string(name)] = keys[results::group_of(name)];
+  for (const results::Look& look : results::looks()) out["colours"][std::string(look.name)] = look.colour;
+  return out;
 }
 
 Json chart_data(const Results& run, const std::string& label) {

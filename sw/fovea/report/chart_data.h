@@ -38,6 +38,8 @@ Periods periods(std::uint64_t from, std::uint64_t to, FramePeriod of, std::size_
 /// time. Intervals of whole frames show equal frames alike; others would beat with them.
 Bandwidth mean_bandwidth(const Timeline& timeline, const Periods& periods);
 
+/// The words and colours of causes, culprits and masters for the script of the page.
+nlohmann::ordered_json words_json();
 /// One run for the script of the page: figures, frames, bandwidth, stalls, latencies, stacks.
 nlohmann::ordered_json chart_data(const Results& run, const std::string& label);
 

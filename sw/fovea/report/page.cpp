@@ -27,6 +27,7 @@ struct Section {
 
 std::string data_json(const std::vector<Results>& runs) {
   nlohmann::ordered_json data{{"format", "fovea report 1"},
+                              {"words", words_json()},
                               {"runs", nlohmann::ordered_json::array()}};
   for (std::size_t i = 0; i < runs.size(); ++i)
     data["runs"].push_back(chart_data(runs[i], runs.size() == 1 ? "" : run_label(i)));
@@ -70,7 +71,8 @@ std::string report_page(const std::vector<Results>& runs) {
       kStart, script_digest(script), escaped(title), kStyle);
   out += fmt::format(
       "<a class=\"skip\" href=\"#verdict\">Skip to the verdict</a>\n<header><h1>{}</h1>"
-      "<div id=\"controls\"></div></header>\n{}<nav aria-label=\"Sections\"><ul>",
+      "<div id=\"controls\"></div></header>\n<div role=\"region\" aria-label=\"System\">{}</div>"
+      "<nav aria-label=\"Sections\"><ul>",
       escaped(title), system_section(runs));
   for (const auto& s : sections)
     out += fmt::format("<li><a href=\"#{}\">{}</a></li>", s.id, s.title);

@@ -16,8 +16,8 @@ struct FigureOptions {
 };
 
 int print_figure(const FigureOptions& o, const CliContext& context) {
-  const results::StoredRun run = results::read_stored_run(o.folder);
-  for (const results::Figure& f : run.figures) {
+  const results::StoredRun stored = results::read_stored_run(o.folder);
+  for (const results::Figure& f : stored.figures) {
     if (f.name != o.name) continue;
     context.out << (f.value ? number_text(*f.value) : "null") << " " << f.unit << std::endl;
     return kExitDone;

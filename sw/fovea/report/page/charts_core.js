@@ -1,9 +1,6 @@
 // The core's clocks: waterfall, difference, call stacks.
-const CAUSES = {
-  issue: 'instructions issue', interlock: 'interlocks', icache: 'I-cache fills', dcache: 'D-cache fills', write_buffer: 'write buffer full',
-  uncached: 'uncached accesses', tlb: 'page walks', tcm: 'internal RAM', cache_op: 'cache maintenance', drain: 'draining writes',
-  bus_sync: 'bus clock edge', idle: 'idle (waits for an interrupt)',
-};
+/// What a cause is called beside a bar.
+const causeLabel = (cause) => words.causes[cause] ?? cause;
 
 /// [cause, clocks, {culprit: clocks}] of everything that has clocks; issue first, idle last, waits by size between.
 function clocksByCause(run) {
@@ -16,18 +13,7 @@ function clocksByCause(run) {
 }
 
 /// Who is to blame, in groups that colours can tell apart; the table has each one.
-const GROUPS = {
-  issue: 'instructions', itself: 'the core itself', bridge: 'bridge between core and crossbar', way: 'unloaded way through crossbar and SDRAM controller',
-  rows: "SDRAM's rows, refresh, turnaround", video: 'camera and display', copying: 'EDMA and remap engine', other: 'other masters',
-};
-function group(culprit) {
-  if (culprit === 'service') return 'way';
-  if (culprit === 'bridge') return 'bridge';
-  if (/^(row_miss|row_conflict|refresh|turnaround|power_down)$/.test(culprit)) return 'rows';
-  if (/^vp[fb]e/.test(culprit)) return 'video';
-  if (culprit.startsWith('edma') || culprit === 'remap_engine') return 'copying';
-  return /^(core|own|arm_[di])$/.test(culprit) ? 'itself' : 'other';
-}
+const group = (culprit) => words.group_of[culprit] ?? 'other';
 
 /// Over the clocks in which the core is awake: an idle core would leave no room for the rest.
 function drawWaterfall(place, run) {
@@ -46,17 +32,17 @@ function drawWaterfall(place, run) {
   const used = new Set();
   let from = 0;
   rows.forEach(([cause, clocks, parts], row) => {
-    const y = box.top + 30 * row + 4, name = CAUSES[cause] ?? cause, sums = {};
+    const y = box.top + 30 * row + 4, name = causeLabel(cause), sums = {};
     for (const [culprit, n] of Object.entries(parts)) sums[group(culprit)] = (sums[group(culprit)] ?? 0) + n;
     const known = Object.values(sums).reduce((sum, n) => sum + n, 0);
     if (clocks > known) sums[cause === 'issue' ? 'issue' : 'itself'] = (sums.itself ?? 0) + clocks - known;
     svg.append(text(box.left - 8, y + 15, name, {'text-anchor': 'end'}));
     let start = from;
-    for (const key of Object.keys(GROUPS).filter((g) => sums[g] > 0)) {
+    for (const key of Object.keys(words.groups).filter((g) => sums[g] > 0)) {
       used.add(key);
       svg.append(element('rect', {x: x(start), y, width: Math.max(x(start + sums[key]) - x(start), 0.4), height: 22, fill: colour(key),
                                   class: sums[key] > all / 200 ? 'edge' : undefined},
-        element('title', {}, `${name}, ${GROUPS[key]}: ${plain(sums[key], 12)} clocks, ${percent(sums[key] / all)}`)));
+        element('title', {}, `${name}, ${words.groups[key]}: ${plain(sums[key], 12)} clocks, ${percent(sums[key] / all)}`)));
       start += sums[key];
     }
     svg.append(text(x(from + clocks) + 6, y + 15, percent(clocks / all)));
@@ -70,7 +56,7 @@ function drawWaterfall(place, run) {
   const spare = run.stats['cpu.spare'];
   const free = idle && spare ? ` It has nothing to do in ${percent(spare[0] / cycles)}${spare[0] < idle ? '; the rest of its sleep waits for the EDMA or the remap engine' : ''}.` : '';
   place.append(element('p', {}, `The core is awake in ${percent(all / cycles)} of its ${short(cycles)} clocks and asleep, waiting for an interrupt, in ${percent(idle / cycles)}.${free}${ended}`),
-               svg, legend(Object.keys(GROUPS).filter((g) => used.has(g)), GROUPS));
+               svg, legend(Object.keys(words.groups).filter((g) => used.has(g)), words.groups));
 }
 
 function drawWaterfallDifference(place, run, first) {
@@ -89,7 +75,7 @@ function drawWaterfallDifference(place, run, first) {
     xAxis(box, x, ticks(-largest, largest, width / 130), 'clocks for each corrected frame; left: fewer, right: more', short));
   rows.forEach(([cause, change], row) => {
     const y = box.top + 28 * row + 4;
-    svg.append(text(box.left - 8, y + 15, (CAUSES[cause] ?? cause).replace(/ \(.*/, ''), {'text-anchor': 'end'}),
+    svg.append(text(box.left - 8, y + 15, causeLabel(cause).replace(/ \(.*/, ''), {'text-anchor': 'end'}),
       element('rect', {x: Math.min(x(0), x(change)), y, width: Math.abs(x(change) - x(0)), height: 20, fill: change < 0 ? 'var(--c0)' : 'var(--c1)'}),
       text(x(0) + (change < 0 ? 6 : -6), y + 15, `${change > 0 ? '+' : ''}${short(change)}`, {'text-anchor': change < 0 ? 'start' : 'end'}));
   });

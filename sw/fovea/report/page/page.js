@@ -100,7 +100,8 @@ function drawAll(runs) {
 
 /// Draws all charts, and again when the window's width has changed for good.
 function charts() {
-  const {runs} = JSON.parse(document.getElementById('data').textContent);
+  const {runs, ...data} = JSON.parse(document.getElementById('data').textContent);
+  words = data.words;
   let width = innerWidth, later = 0;
   drawAll(runs);
   addEventListener('resize', () => {

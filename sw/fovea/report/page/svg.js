@@ -73,14 +73,12 @@ function yAxis(box, at, values, name, show = plain) {
   return g;
 }
 
+/// Words and colours of causes, culprits and masters, as the program that made the page has them.
+let words = {causes: {}, groups: {}, group_of: {}, colours: {}};
+
 /// Fixed colours, so that a master looks the same in every chart and every run.
-const COLOURS = {
-  arm_d: 0, arm_i: 5, vpfe: 2, vpbe: 1, edma_tc0: 3, edma_tc1: 4, edma_tc2: 6, edma_tc3: 8, remap_engine: 7, load: 9,
-  capture: 2, remap: 0, display: 1,
-  issue: 0, itself: 5, way: 4, bridge: 6, rows: 3, video: 2, copying: 1, other: 8,
-};
 function colour(name) {
-  return `var(--c${COLOURS[name] ?? 7})`;
+  return `var(--c${words.colours[name] ?? 7})`;
 }
 function legend(names, labels = {}) {
   return element('ul', {class: 'legend'}, ...names.map((name) => {
