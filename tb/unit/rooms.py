@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The folders of the host program are libraries: none includes a header of a folder whose library it does not link, no
-two need each other, and no source lies outside of them.
+two need each other, no source lies outside of them, and names of figures stand in one file.
 Usage: rooms.py SOURCE"""
 import pathlib
 import re
@@ -62,6 +62,15 @@ def main():
             if m.group(1) != folder and m.group(1) not in reach[folder]:
                 problems.append(f"{folder}/{path.name}: includes a header of {m.group(1)}, which "
                                 f"{folder}/CMakeLists.txt does not link")
+    names = re.findall(r'= ("[a-z0-9_.]+");', (root / "results/names.h").read_text())
+    if len(names) < 30:
+        problems.append(f"{len(names)} names of figures found: this test looks in the wrong place")
+    for path in sorted(root.glob("*/*")):
+        if path.suffix not in (".h", ".cpp") or path.name == "names.h":
+            continue
+        code = re.sub(r"//.*", "", path.read_text())
+        problems += [f"{path.parent.name}/{path.name}: {name} is written out; results/names.h has it"
+                     for name in names if name in code]
     if includes < 300:
         problems.append(f"{includes} includes found: this test looks in the wrong place")
     for p in problems:

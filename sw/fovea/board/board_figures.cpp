@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sw/fovea/results/figures.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/tools/stall_regions.h"
 
 namespace fovea::app {
@@ -97,26 +98,26 @@ bool BoardFigures::core_done() const {
 void BoardFigures::add_frame_stats(std::vector<StatRow>& rows) const {
   const board::FrameStats f = board_.frame_stats();
   if (f.rate)
-    rows.push_back(row("frame.rate", *f.rate, "1/s",
+    rows.push_back(row(names::kRate, *f.rate, "1/s",
                        "new frames displayed / time, over the whole display frames in the window"));
-  rows.push_back(row("frame.window", f.window, "s", "length of the measured window"));
+  rows.push_back(row(names::kWindow, f.window, "s", "length of the measured window"));
   rows.push_back(row("frame.captured", f.captured, "1", "complete frames captured in the window"));
-  rows.push_back(row("frame.remapped", f.remapped, "1", "frames corrected (remap finished) in the window"));
-  rows.push_back(row("frame.displayed", f.displayed, "1", "frames displayed in the window"));
-  rows.push_back(row("frame.dropped", f.dropped, "1", "captured frames that were never displayed"));
-  rows.push_back(row("frame.repeated", f.repeated, "1", "displayed frames that show a camera frame again"));
+  rows.push_back(row(names::kRemapped, f.remapped, "1", "frames corrected (remap finished) in the window"));
+  rows.push_back(row(names::kDisplayed, f.displayed, "1", "frames displayed in the window"));
+  rows.push_back(row(names::kDropped, f.dropped, "1", "captured frames that were never displayed"));
+  rows.push_back(row(names::kRepeated, f.repeated, "1", "displayed frames that show a camera frame again"));
   if (!board_.digital)
-    rows.push_back(row("frame.repeated_relock", f.repeated_relock, "1",
+    rows.push_back(row(names::kRepeatedRelock, f.repeated_relock, "1",
                        "of the repeated frames, those for which no newer one could be on show yet, because the decoder "
                        "had to find a camera's syncs"));
   if (f.latencies) {
     const std::string what = "time from a frame's first captured sample to its first displayed sample, ";
-    rows.push_back(row("frame.latency.min", to_s(f.latency_min), "s", what + "shortest"));
-    rows.push_back(row("frame.latency.mean", f.latency_mean * 1e-12, "s", what + "mean"));
-    rows.push_back(row("frame.latency.max", to_s(f.latency_max), "s", what + "longest"));
+    rows.push_back(row(names::kLatencyMin, to_s(f.latency_min), "s", what + "shortest"));
+    rows.push_back(row(names::kLatencyMean, f.latency_mean * 1e-12, "s", what + "mean"));
+    rows.push_back(row(names::kLatencyMax, to_s(f.latency_max), "s", what + "longest"));
   }
   if (f.remaps) {
-    rows.push_back(row("frame.remap_rate", f.remap_rate, "1/s",
+    rows.push_back(row(names::kRemapRate, f.remap_rate, "1/s",
                        "remaps that ended in the window / its length; with firmware.repeat above 1 what the "
                        "remap loop manages without waiting for the camera"));
     add_remap_times(rows, to_s(f.remap_min), f.remap_mean * 1e-12, to_s(f.remap_max));
@@ -125,10 +126,10 @@ void BoardFigures::add_frame_stats(std::vector<StatRow>& rows) const {
   const auto lut = board_.log.first(board::Phase::kLut);
   const auto idle = board_.log.first(board::Phase::kIdle);
   if (lut && idle && *idle > *lut)
-    rows.push_back(row("startup.lut_time", to_s(*idle - *lut), "s",
+    rows.push_back(row(names::kStartupLutTime, to_s(*idle - *lut), "s",
                        "time to build the look-up table, from phase 2 to phase 3 on the pins"));
   if (opened_)
-    rows.push_back(row("startup.first_frame", to_s(*board_.window_start()), "s",
+    rows.push_back(row(names::kStartupFirstFrame, to_s(*board_.window_start()), "s",
                        "time from power-up to the start of the first corrected frame on the display"));
 }
 
@@ -139,10 +140,10 @@ void BoardFigures::add_host(RunResult& result, double wall_seconds, bool strict)
   h.push_back(peak_rss());
   if (window_wall_s_ > 0 && window > 0)
     h.push_back(realtime_factor(window, window_wall_s_, "in the measured window"));
-  if (const StatRow* n = find(result.stats, "cpu.instructions"); n && window_wall_s_ > 0)
+  if (const StatRow* n = find(result.stats, names::kCpuInstructions); n && window_wall_s_ > 0)
     h.push_back(
         mips(std::get<std::uint64_t>(n->value), window_wall_s_, "in the measured window"));
-  if (const StatRow* n = find(result.stats, "cpu.instructions"); n && host_in_window_)
+  if (const StatRow* n = find(result.stats, names::kCpuInstructions); n && host_in_window_)
     if (const auto guest = std::get<std::uint64_t>(n->value))
       h.push_back(row("host_instructions", static_cast<double>(*host_in_window_) / static_cast<double>(guest), "1",
                       "instructions of the host, of the simulating thread, for each one of the core, in the "

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/sleep.h"
 
 namespace fovea::app {
@@ -92,7 +93,7 @@ void RemapTime::collect(const cpu::Counts& from, const cpu::Counts& to,
       const auto k = static_cast<std::size_t>(info.event);
       spare -= rest.idle_by[k] - all.idle_by[k];
     }
-  rows.push_back({"cpu.spare", spare, "cycles",
+  rows.push_back({names::kCpuSpare, spare, "cycles",
                   "clocks of cpu.idle in which the program has nothing to do: without the sleeps within remaps, and "
                   "without those that the EDMA or the remap engine ended"});
   if (all.cycles == 0) return;

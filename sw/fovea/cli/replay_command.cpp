@@ -22,6 +22,7 @@
 #include "sw/fovea/replay/replay_clocks.h"
 #include "sw/fovea/replay/replay_path.h"
 #include "sw/fovea/results/figures.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/run_dir.h"
 #include "sw/fovea/tools/command_trace.h"
 
@@ -61,7 +62,7 @@ void add_remap_rows(const ReplayPath& path, std::vector<StatRow>& rows) {
   double sum = 0;
   for (const Picoseconds t : times) sum += static_cast<double>(t) * 1e-12;
   const auto [min, max] = std::minmax_element(times.begin(), times.end());
-  rows.push_back({"frame.remapped", std::uint64_t{times.size()}, "1",
+  rows.push_back({names::kRemapped, std::uint64_t{times.size()}, "1",
                   "frames corrected (remap finished) in the trace"});
   add_remap_times(rows, static_cast<double>(*min) * 1e-12,
                   sum / static_cast<double>(times.size()), static_cast<double>(*max) * 1e-12);

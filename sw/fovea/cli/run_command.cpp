@@ -28,6 +28,7 @@
 #include "sw/fovea/machine/progress.h"
 #include "sw/fovea/machine/row_files.h"
 #include "sw/fovea/replay/replay_params.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/run_dir.h"
 #include "sw/fovea/tools/command_trace.h"
 
@@ -171,13 +172,13 @@ class PictureFiles {
 void report_run(const RunOptions& options, const RunResult& result, const std::vector<StatRow>& host,
                 const RunDir& dir, std::ostream& report) {
   report << run_words(result.stats, host, result.slowest);
-  if (find(result.stats, "frame.remap_time.mean"))
+  if (find(result.stats, names::kRemapTimeMean))
     report << fmt::format("what binds: {}\n", explain::binds_command(options.experiment, options.sets));
   report << result.profile.table;
   for (const auto& note : result.notes) report << one_line(note) << "\n";
   if (!result.ended.empty()) report << fmt::format("ended by {}\n", result.ended);
   report << fmt::format("results in {}\n", one_line(dir.folder().string(), std::string::npos));
-  const StatRow* shown = find(result.stats, "frame.displayed");
+  const StatRow* shown = find(result.stats, names::kDisplayed);
   if (!options.no_frames && shown && shown->value != StatBase::Value(std::uint64_t{0}))
     report << "pictures in its frames/ (displayed) and camera/ (what the camera sent)\n";
   if (const fs::path page = dir.folder() / "report.html"; options.report && fs::exists(page))

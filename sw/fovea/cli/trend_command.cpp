@@ -14,6 +14,7 @@
 #include "sw/fovea/files/child_process.h"
 #include "sw/fovea/files/output_file.h"
 #include "sw/fovea/regression/trend.h"
+#include "sw/fovea/results/names.h"
 
 namespace fovea::app {
 namespace {
@@ -57,9 +58,9 @@ CLI::App* add_options(CLI::App& app, TrendOptions& t) {
 }
 
 /// Figures that a plot shows if none are asked for.
-const std::vector<std::string> kPlotted = {"frame.remap_time.mean", "frame.latency.mean", "frame.rate",
-                                           "startup.lut_time",      "cpu.cycles",         "cpu.instructions",
-                                           "ddr.utilisation",       kHostInstructions};
+const std::vector<std::string> kPlotted = {
+    names::kRemapTimeMean, names::kLatencyMean,     names::kRate,           names::kStartupLutTime,
+    names::kCpuCycles,     names::kCpuInstructions, names::kDdrUtilisation, kHostInstructions};
 
 /// Behind the line of a run whose host has no counter of instructions, as virtual machines often have none.
 constexpr const char* kNotCounted =

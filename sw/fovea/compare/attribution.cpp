@@ -10,6 +10,7 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/table_file.h"
 
 namespace fovea::regression {
@@ -136,9 +137,9 @@ std::vector<AttributionRow> read_stalls(const RunFigures& run) {
   for (std::size_t i = 0; i < table.rows(); ++i)
     add(table.text(i, "cause"), table.text(i, "region"), table.text(i, "culprit"),
         table.count(i, "cycles"));
-  add("issue", "", "", static_cast<std::uint64_t>(run.value("cpu.issue")));
+  add("issue", "", "", static_cast<std::uint64_t>(run.value(names::kCpuIssue)));
   // Split by the event that ended the idle time, where the run tells; the sleeps within remaps are waits.
-  double rest = run.value("cpu.idle");
+  double rest = run.value(names::kCpuIdle);
   for (const auto& [name, m] : run.metrics)
     if (name.starts_with("cpu.idle.") && m.whole) {
       const std::string event = name.substr(std::string_view("cpu.idle.").size());
@@ -174,11 +175,11 @@ void divide(Attribution& out) {
 
 /// The time within remaps, by that of one.
 double remaps_of(const RunFigures& run, const Attribution& a) {
-  const double one = run.value("frame.remap_time.mean");
+  const double one = run.value(names::kRemapTimeMean);
   double clocks = 0;
   for (const AttributionRow& r : a.rows)
     if (r.phase == kRemapPhase) clocks += static_cast<double>(r.clocks);
-  return one > 0 && clocks > 0 && a.seconds > 0 ? clocks * a.seconds / one : run.value("frame.remapped");
+  return one > 0 && clocks > 0 && a.seconds > 0 ? clocks * a.seconds / one : run.value(names::kRemapped);
 }
 
 void read_profile_files(const RunFigures& run, Attribution& out) {
@@ -239,8 +240,8 @@ bool has_profile(const RunFigures& run) {
 Attribution attribution_of(const RunFigures& run, bool profile) {
   Attribution out;
   std::error_code error;
-  out.clocks = run.value("cpu.cycles");
-  if (const double window = run.value("frame.window"); window > 0 && out.clocks > 0)
+  out.clocks = run.value(names::kCpuCycles);
+  if (const double window = run.value(names::kWindow); window > 0 && out.clocks > 0)
     out.seconds = window / out.clocks;
   const char* file = "profile.csv";
   if (profile && has_profile(run)) {

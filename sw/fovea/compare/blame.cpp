@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "sw/fovea/compare/matching.h"
+#include "sw/fovea/results/names.h"
 
 namespace fovea::regression {
 namespace {
@@ -257,7 +258,7 @@ bool Difference::none() const {
 }
 
 RunPart part_of_figure(const std::string& name) {
-  if (name == "startup.lut_time") return RunPart::kLut;
+  if (name == names::kStartupLutTime) return RunPart::kLut;
   if (name.starts_with("startup.")) return RunPart::kStartup;
   if (name.starts_with("frame.remap_time.") || name.starts_with("cpu.remap.")) return RunPart::kRemap;
   return RunPart::kWindow;

@@ -9,6 +9,7 @@
 
 #include "model/common/check.h"
 #include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/outputs.h"
 
 namespace fovea::regression {
@@ -120,7 +121,7 @@ Circumstances circumstances_of(const RunFigures& before, const RunFigures& after
   for (const char* const cache : {"icache", "dcache"}) {
     // Without a cache there are no line fills; of programs without these nothing is known.
     const std::string fills = std::string("cpu.") + cache + (cache[0] == 'i' ? ".accesses" : ".reads");
-    if (before.value(fills) > 0 && after.metric("cpu.cycles") && after.value(fills) == 0)
+    if (before.value(fills) > 0 && after.metric(names::kCpuCycles) && after.value(fills) == 0)
       out.notes.push_back(fmt::format("the {}-cache is off", cache[0] == 'i' ? 'I' : 'D'));
   }
   return out;
@@ -199,7 +200,7 @@ Comparison compare_runs(const RunFigures& before, const RunFigures& after,
     out.difference = difference_of(a, b, circumstances_of(before, after));
   if (!a.startup.empty() && !b.startup.empty())
     for (const MetricChange& m : out.changes)
-      if (m.difference() && (m.name == "startup.lut_time" || m.name == "startup.first_frame"))
+      if (m.difference() && (m.name == names::kStartupLutTime || m.name == names::kStartupFirstFrame))
         out.startup.push_back(difference_of(a, b, circumstances_of(before, after), part_of_figure(m.name)));
   return out;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sw/fovea/compare/compare.h"
+#include "sw/fovea/results/names.h"
 
 namespace fovea::regression {
 namespace {
@@ -14,29 +15,30 @@ bool begins(const std::string& name, std::initializer_list<const char*> parts) {
 
 /// The frame period in seconds; 0: the result has no frames.
 double frame_period(const RunFigures& run) {
-  const double rate = run.value("frame.rate");
+  const double rate = run.value(names::kRate);
   return rate > 0 ? 1 / rate : 0;
 }
 
 /// The time that the figures cover.
 double window_of(const RunFigures& run) {
-  const double window = run.value("frame.window");
+  const double window = run.value(names::kWindow);
   return window > 0 ? window : run.value("replay.time");
 }
 
 /// What a change of `name` by 1 is a share of; 0: there is nothing.
 double whole_of(const std::string& name, const std::string& unit, const RunFigures& run) {
   const double window = window_of(run), period = frame_period(run);
-  if (unit == "cycles" || name == "cpu.instructions") return run.value("cpu.cycles");
+  if (unit == "cycles" || name == names::kCpuInstructions) return run.value(names::kCpuCycles);
   if (unit == "ratio") return 1;
   if (unit == "s") {
     const bool sum = name.find(".wait.") != name.npos || name.ends_with(".busy_time") || period == 0;
     return sum ? window : period;
   }
-  if (unit == "B" && run.value("ddr.utilisation") > 0) return run.value("ddr.bus_bytes") / run.value("ddr.utilisation");
+  if (const double busy = run.value(names::kDdrUtilisation); unit == "B" && busy > 0)
+    return run.value(names::kDdrBusBytes) / busy;
   if (unit == "1/s" && begins(name, {"frame."})) return run.value(name);
-  if (begins(name, {"frame.dropped", "frame.repeated", "capture.overflows", "display.underflows"}))
-    return run.value("frame.displayed");
+  if (begins(name, {names::kDropped, names::kRepeated, names::kCaptureOverflows, names::kDisplayUnderflows}))
+    return run.value(names::kDisplayed);
   return 0;
 }
 

@@ -9,6 +9,7 @@
 
 #include "sw/fovea/exec/exec_caches.h"
 #include "sw/fovea/probes/run_profile.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/tools/stall_regions.h"
 
 namespace fovea::app {
@@ -129,7 +130,7 @@ ExecResult ExecSession::result(const std::string& failure) {
   out.stats = core_stats();
   const cpu::Counts& c = core_.counts();
   FOVEA_CHECK(std::accumulate(c.stall.begin(), c.stall.end(), c.issue + c.idle) ==
-                  std::get<std::uint64_t>(find(out.stats, "cpu.cycles")->value),
+                  std::get<std::uint64_t>(find(out.stats, names::kCpuCycles)->value),
               "every clock of the core has one cause");
   out.stalls = stall_rows({}, c, core_.regions());
   if (request_.profile) side_output("the profile", out.lost, [&] { out.profile = profile(); });

@@ -8,6 +8,7 @@
 
 #include "sw/fovea/explain/rules.h"
 #include "sw/fovea/explain/words.h"
+#include "sw/fovea/results/names.h"
 
 namespace fovea::explain {
 namespace {
@@ -46,8 +47,8 @@ std::optional<double> Run::number(std::string_view key) const {
 }
 
 double Run::awake() const {
-  const auto cycles = value("cpu.cycles");
-  return cycles ? *cycles - value_or_zero("cpu.idle") : 0;
+  const auto cycles = value(names::kCpuCycles);
+  return cycles ? *cycles - value_or_zero(names::kCpuIdle) : 0;
 }
 
 Shares Run::stall_causes() const {
@@ -107,12 +108,12 @@ Shares Run::regions(std::string_view cause) const {
 }
 
 bool Run::remaps_in_a_row() const {
-  const double fresh = value_or_zero("frame.displayed") - value_or_zero("frame.repeated");
-  return fresh > 0 && 2 * value_or_zero("frame.remapped") >= 3 * fresh;
+  const double fresh = value_or_zero(names::kDisplayed) - value_or_zero(names::kRepeated);
+  return fresh > 0 && 2 * value_or_zero(names::kRemapped) >= 3 * fresh;
 }
 
 double Run::frame_period() const {
-  const auto window = value("frame.window"), displayed = value("frame.displayed");
+  const auto window = value(names::kWindow), displayed = value(names::kDisplayed);
   return window && displayed && *displayed > 0 ? *window / *displayed : 0;
 }
 
@@ -129,7 +130,7 @@ std::vector<Finding> explain_difference(const Inputs& inputs_a, std::string_view
                                         const Inputs& inputs_b, std::string_view name_b) {
   const Run a(inputs_a), b(inputs_b);
   std::vector<Finding> out;
-  const auto before = a.value("frame.remap_time.mean"), after = b.value("frame.remap_time.mean");
+  const auto before = a.value(names::kRemapTimeMean), after = b.value(names::kRemapTimeMean);
   if (before && after && *before > 0) {
     const double change = *after - *before;
     // A tenth of the smallest change that anybody would act on.
@@ -142,16 +143,16 @@ std::vector<Finding> explain_difference(const Inputs& inputs_a, std::string_view
              : fmt::format("The remap of {} takes {} instead of the {} of {}: {} {}.", name_b,
                            milliseconds(*after), milliseconds(*before), name_a,
                            percent(std::abs(change) / *before), change < 0 ? "less" : "more"),
-         {"frame.remap_time.mean"}});
+         {names::kRemapTimeMean}});
   }
-  const double frames_a = a.value_or_zero("frame.remapped"),
-               frames_b = b.value_or_zero("frame.remapped");
+  const double frames_a = a.value_or_zero(names::kRemapped),
+               frames_b = b.value_or_zero(names::kRemapped);
   if (frames_a == 0 || frames_b == 0) return out;
   std::map<std::string, double> clocks;
   for (const auto& [cause, n] : b.stall_causes()) clocks[cause] += n / frames_b;
   for (const auto& [cause, n] : a.stall_causes()) clocks[cause] -= n / frames_a;
   clocks["issue"] =
-      b.value_or_zero("cpu.issue") / frames_b - a.value_or_zero("cpu.issue") / frames_a;
+      b.value_or_zero(names::kCpuIssue) / frames_b - a.value_or_zero(names::kCpuIssue) / frames_a;
   const auto largest = std::max_element(
       clocks.begin(), clocks.end(),
       [](const auto& x, const auto& y) { return std::abs(x.second) < std::abs(y.second); });
@@ -166,8 +167,8 @@ std::vector<Finding> explain_difference(const Inputs& inputs_a, std::string_view
                      name_b, size / 1000, largest->second < 0 ? "less" : "more",
                      largest->first == "issue" ? std::string("on issuing instructions")
                                                : "on waiting for " + waits_for(largest->first)),
-         {largest->first == "issue" ? "cpu.issue" : "cpu.stall." + largest->first,
-          "frame.remapped"}});
+         {largest->first == "issue" ? names::kCpuIssue : "cpu.stall." + largest->first,
+          names::kRemapped}});
   return out;
 }
 

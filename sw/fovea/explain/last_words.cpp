@@ -14,6 +14,7 @@
 #include "model/cpu/core/stalls.h"
 #include "sw/fovea/explain/words.h"
 #include "sw/fovea/explain/wrapped.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/sleep.h"
 #include "sw/fovea/results/words.h"
 
@@ -48,7 +49,7 @@ Part wait_of_remaps(std::span<const StatRow> stats) {
   std::string who = "the EDMA or the remap engine";
   for (const cpu::WakeInfo& info : cpu::kWakeTable)
     if (event == info.name) who = info.who;
-  return {"waiting for " + who, count(stats, "cpu.remap.idle")};
+  return {"waiting for " + who, count(stats, names::kCpuRemapIdle)};
 }
 
 std::vector<Part> stalls(std::span<const StatRow> stats, const std::string& prefix) {
@@ -61,8 +62,8 @@ std::vector<Part> stalls(std::span<const StatRow> stats, const std::string& pref
 
 /// All clocks of the window.
 std::vector<Part> all_clocks(std::span<const StatRow> stats) {
-  std::vector<Part> out = {{"executing", count(stats, "cpu.issue")}, wait_of_remaps(stats)};
-  std::uint64_t rest = count(stats, "cpu.idle") - std::min(count(stats, "cpu.idle"), out.back().amount);
+  std::vector<Part> out = {{"executing", count(stats, names::kCpuIssue)}, wait_of_remaps(stats)};
+  std::uint64_t rest = count(stats, names::kCpuIdle) - std::min(count(stats, names::kCpuIdle), out.back().amount);
   for (const cpu::WakeInfo& info : cpu::kWakeTable) {
     const std::string event = std::string("idle.") + info.name;
     const std::uint64_t clocks =
@@ -126,7 +127,7 @@ std::string paragraph(std::string label, const std::string& text) {
 
 /// The core's clocks by what they were spent on, in percent that add up to 100.
 std::string core_line(std::span<const StatRow> stats) {
-  if (count(stats, "cpu.cycles") == 0) return "";
+  if (count(stats, names::kCpuCycles) == 0) return "";
   return paragraph("core", listed(apportioned_parts(1000, all_clocks(stats)), "\x1f%"));
 }
 
@@ -220,16 +221,16 @@ std::string quality_line(std::span<const StatRow> stats) {
 /// "SDRAM busy 17.2 % ...". `seconds`: of the figures.
 std::string sdram_line(std::span<const StatRow> stats, std::optional<double> seconds) {
   std::vector<std::string> parts;
-  if (const auto busy = real(stats, "ddr.utilisation"))
+  if (const auto busy = real(stats, names::kDdrUtilisation))
     parts.push_back(fmt::format("data bus busy {:.1f}\x1f%", 100 * *busy));
-  if (const auto idle = real(stats, "ddr.headroom"))
+  if (const auto idle = real(stats, names::kDdrHeadroom))
     parts.push_back(fmt::format("no request queued {:.1f}\x1f%", 100 * *idle));
   if (seconds && *seconds > 0)
-    for (const auto& [name, what] : {std::pair("ddr.read_bytes", "reads"), std::pair("ddr.write_bytes", "writes")})
+    for (const auto& [name, what] : {std::pair(names::kDdrReadBytes, "reads"), {names::kDdrWriteBytes, "writes"}})
       if (const std::uint64_t bytes = count(stats, name))
         parts.push_back(fmt::format("{} {:.1f}\x1fMB/s", what, static_cast<double>(bytes) / *seconds * 1e-6));
-  const std::uint64_t hits = count(stats, "ddr.row_hits");
-  if (const std::uint64_t all = hits + count(stats, "ddr.row_misses") + count(stats, "ddr.row_conflicts"))
+  const std::uint64_t hits = count(stats, names::kDdrRowHits);
+  if (const std::uint64_t all = hits + count(stats, names::kDdrRowMisses) + count(stats, names::kDdrRowConflicts))
     parts.push_back(fmt::format("row hits {:.1f}\x1f%", 100 * static_cast<double>(hits) / static_cast<double>(all)));
   if (parts.empty()) return "";
   return paragraph("SDRAM", fmt::format("{}", fmt::join(parts, ", ")));
@@ -264,7 +265,7 @@ std::string frame_lines(std::span<const StatRow> stats) {
   };
   add("frame.remap_time", "a remap");
   add("frame.latency", "capture to display");
-  if (const auto t = real(stats, "startup.lut_time"))
+  if (const auto t = real(stats, names::kStartupLutTime))
     parts.push_back("look-up table built in " + milliseconds(*t) + "\x1fms");
   return parts.empty() ? "" : paragraph("times", fmt::format("{}", fmt::join(parts, ", ")));
 }
@@ -321,9 +322,9 @@ std::vector<std::uint64_t> apportioned(std::uint64_t total, std::span<const std:
 }
 
 std::string frame_budget(std::span<const StatRow> stats) {
-  const auto window = real(stats, "frame.window");
-  const std::uint64_t displayed = count(stats, "frame.displayed"), cycles = count(stats, "cpu.cycles");
-  const std::uint64_t remap = count(stats, "cpu.remap.cycles"), spare = count(stats, "cpu.spare");
+  const auto window = real(stats, names::kWindow);
+  const std::uint64_t displayed = count(stats, names::kDisplayed), cycles = count(stats, names::kCpuCycles);
+  const std::uint64_t remap = count(stats, names::kCpuRemapCycles), spare = count(stats, names::kCpuSpare);
   if (!window || displayed == 0 || remap == 0 || remap > cycles || spare > cycles - remap) return "";
   const auto period =
       static_cast<std::uint64_t>(std::llround(*window / static_cast<double>(displayed) * 1e4));
@@ -344,7 +345,7 @@ std::string frame_budget(std::span<const StatRow> stats) {
 std::string run_words(std::span<const StatRow> stats, std::span<const StatRow> host,
                       std::span<const SlowestRow> slowest) {
   return verdict(stats) + frame_budget(stats) + frame_lines(stats) + camera_lines(stats) + quality_line(stats) +
-         core_line(stats) + sdram_line(stats, real(stats, "frame.window")) + wait_line(stats) + slowest_lines(slowest) +
+         core_line(stats) + sdram_line(stats, real(stats, names::kWindow)) + wait_line(stats) + slowest_lines(slowest) +
          engine_line(stats) + host_line(host);
 }
 
@@ -363,7 +364,7 @@ std::string replay_words(std::span<const StatRow> stats, std::span<const StatRow
 }
 
 std::string exec_words(std::span<const StatRow> stats, Frequency core_clock) {
-  const std::uint64_t cycles = count(stats, "cpu.cycles"), instructions = count(stats, "cpu.instructions");
+  const std::uint64_t cycles = count(stats, names::kCpuCycles), instructions = count(stats, names::kCpuInstructions);
   std::string out = fmt::format("{} instructions in {} clocks", instructions, cycles);
   if (instructions)
     out += fmt::format(", {:.2f} an instruction", static_cast<double>(cycles) / static_cast<double>(instructions));

@@ -9,6 +9,7 @@
 #include "model/common/masters.h"
 #include "model/cpu/core/stalls.h"
 #include "sw/fovea/explain/words.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/sleep.h"
 
 namespace fovea::explain {
@@ -29,16 +30,16 @@ std::string listed(const std::vector<std::string>& items) {
 }  // namespace
 
 void find_rate(const Run& run, std::vector<Finding>& out) {
-  const auto displayed = run.value("frame.displayed");
-  if (!displayed || *displayed == 0 || !run.value("frame.repeated")) return;
-  const double repeated = run.value_or_zero("frame.repeated"),
-               dropped = run.value_or_zero("frame.dropped");
+  const auto displayed = run.value(names::kDisplayed);
+  if (!displayed || *displayed == 0 || !run.value(names::kRepeated)) return;
+  const double repeated = run.value_or_zero(names::kRepeated),
+               dropped = run.value_or_zero(names::kDropped);
   if (repeated == 0 && dropped == 0) {
     out.push_back(
         {"rate",
          fmt::format("The board keeps up with the camera: each of the {} shows a new picture.",
                      counted(*displayed, "displayed frame")),
-         {"frame.displayed", "frame.repeated", "frame.dropped"}});
+         {names::kDisplayed, names::kRepeated, names::kDropped}});
   } else {
     out.push_back(
         {"rate",
@@ -47,23 +48,23 @@ void find_rate(const Run& run, std::vector<Finding>& out) {
                      repeated, counted(*displayed, "displayed frame"),
                      repeated == 1 ? "shows" : "show", dropped,
                      dropped == 1 ? "frame was" : "frames were"),
-         {"frame.displayed", "frame.repeated", "frame.dropped"}});
+         {names::kDisplayed, names::kRepeated, names::kDropped}});
   }
-  if (const double n = run.value_or_zero("capture.overflows"); n > 0)
+  if (const double n = run.value_or_zero(names::kCaptureOverflows); n > 0)
     out.push_back(
         {"overflow",
          fmt::format("{} of captured data {} lost, because the memory did not take {} in time.",
                      counted(n, "burst"), n == 1 ? "was" : "were", n == 1 ? "it" : "them"),
-         {"capture.overflows"}});
-  if (const double n = run.value_or_zero("display.underflows"); n > 0)
+         {names::kCaptureOverflows}});
+  if (const double n = run.value_or_zero(names::kDisplayUnderflows); n > 0)
     out.push_back(
         {"underflow",
          fmt::format("{} of picture data came too late for the display.", counted(n, "burst")),
-         {"display.underflows"}});
+         {names::kDisplayUnderflows}});
 }
 
 void find_budget(const Run& run, std::vector<Finding>& out) {
-  const auto remap = run.value("frame.remap_time.mean");
+  const auto remap = run.value(names::kRemapTimeMean);
   const double period = run.frame_period();
   if (!remap || period <= 0 || run.remaps_in_a_row()) return;
   const std::string begin = fmt::format(
@@ -74,7 +75,7 @@ void find_budget(const Run& run, std::vector<Finding>& out) {
                                             percent(*remap / period), milliseconds(period - *remap))
                               : fmt::format("it is {} too long for every frame.",
                                             milliseconds(*remap - period))),
-                 {"frame.remap_time.mean", "frame.window", "frame.displayed"}});
+                 {names::kRemapTimeMean, names::kWindow, names::kDisplayed}});
 }
 
 void find_latency_parts(const Run& run, std::vector<Finding>& out) {
@@ -116,10 +117,10 @@ void find_mover(const Run& run, std::vector<Finding>& out) {
   };
   static constexpr std::array kMovers{Mover{cpu::WakeEvent::kDma, "edma_tc"},
                                       Mover{cpu::WakeEvent::kEngine, "remap_engine"}};
-  const double all = run.value_or_zero("cpu.remap.cycles"), asleep = run.value_or_zero("cpu.remap.idle");
+  const double all = run.value_or_zero(names::kCpuRemapCycles), asleep = run.value_or_zero(names::kCpuRemapIdle);
   // Less is a rest that the core waits for at the end of its own work.
   if (asleep <= 0 || asleep < 0.05 * all) return;
-  std::vector<std::string> names, evidence{"cpu.remap.idle", "cpu.remap.cycles"}, sentences;
+  std::vector<std::string> names, evidence{names::kCpuRemapIdle, names::kCpuRemapCycles}, sentences;
   for (const Mover& m : kMovers) {
     const cpu::WakeInfo& info = cpu::kWakeTable[static_cast<std::size_t>(m.event)];
     // The interrupts of others in the midst of a wait do not tell whom it is for.
@@ -155,13 +156,13 @@ void find_largest_wait(const Run& run, std::vector<Finding>& out) {
   if (awake <= 0 || causes.empty()) return;
   const auto& [cause, clocks] = causes.front();
   std::string text;
-  if (const double share = awake / run.value_or_zero("cpu.cycles"); share < 0.1)
+  if (const double share = awake / run.value_or_zero(names::kCpuCycles); share < 0.1)
     text = fmt::format("The core is awake in only {} of its clocks. ", percent(share));
   text += fmt::format(
       "Largest wait: in {} of the clocks in which it is awake, the core waits "
       "for {}",
       percent(clocks / awake), waits_for(cause));
-  std::vector<std::string> evidence{"cpu.stall." + cause, "cpu.cycles", "cpu.idle"};
+  std::vector<std::string> evidence{"cpu.stall." + cause, names::kCpuCycles, names::kCpuIdle};
   std::vector<std::string> parts;
   for (const auto& [culprit, n] : run.culprits(cause)) {
     // Two parts say where it goes; smaller ones distract.
@@ -185,7 +186,7 @@ void find_largest_wait(const Run& run, std::vector<Finding>& out) {
     }
   }
   text += fmt::format(" It issues instructions in {}.",
-                      percent(run.value_or_zero("cpu.issue") / awake));
+                      percent(run.value_or_zero(names::kCpuIssue) / awake));
   out.push_back({"largest_wait", text, evidence});
 }
 
@@ -244,19 +245,19 @@ void find_other_masters(const Run& run, std::vector<Finding>& out) {
       {"other_masters",
        fmt::format("Waiting while other masters are served adds {} to the core's awake clocks{}{}.",
                    percent(all / awake), parts.empty() ? "" : ": ", listed(parts)),
-       {"cpu.stall.*.by.*", "cpu.cycles", "cpu.idle"}});
+       {"cpu.stall.*.by.*", names::kCpuCycles, names::kCpuIdle}});
 }
 
 void find_rows(const Run& run, std::vector<Finding>& out) {
-  const double hits = run.value_or_zero("ddr.row_hits"),
-               misses = run.value_or_zero("ddr.row_misses"),
-               conflicts = run.value_or_zero("ddr.row_conflicts"), all = hits + misses + conflicts;
+  const double hits = run.value_or_zero(names::kDdrRowHits),
+               misses = run.value_or_zero(names::kDdrRowMisses),
+               conflicts = run.value_or_zero(names::kDdrRowConflicts), all = hits + misses + conflicts;
   if (all == 0) return;
   std::string text = fmt::format(
       "{} of the requests to the SDRAM find their row open, {} find another "
       "row open, {} a closed bank.",
       percent(hits / all), percent(conflicts / all), percent(misses / all));
-  std::vector<std::string> evidence{"ddr.row_hits", "ddr.row_conflicts", "ddr.row_misses"};
+  std::vector<std::string> evidence{names::kDdrRowHits, names::kDdrRowConflicts, names::kDdrRowMisses};
   if (const double awake = run.awake(); awake > 0) {
     double rows = 0;
     for (const auto& [culprit, n] : run.culprits())
@@ -268,14 +269,14 @@ void find_rows(const Run& run, std::vector<Finding>& out) {
 }
 
 void find_sdram_use(const Run& run, std::vector<Finding>& out) {
-  const auto use = run.value("ddr.utilisation");
+  const auto use = run.value(names::kDdrUtilisation);
   if (!use) return;
   out.push_back(
       {"sdram",
        fmt::format("The SDRAM's data bus moves data in {} of the time. That alone does not say "
                    "whether a faster SDRAM would help.",
                    percent(*use)),
-       {"ddr.utilisation"}});
+       {names::kDdrUtilisation}});
 }
 
 }  // namespace fovea::explain

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/outputs.h"
 
 namespace fovea::limits {
@@ -23,7 +24,7 @@ std::string slack_text(const points::PointResult& r) {
 
 /// A loop that has slipped shows every frame, but later. Empty: this one shows its frames no later than the other one.
 std::string later_text(const points::PointResult& r, const points::PointResult& than, const std::string& name) {
-  const auto late = r.stat("frame.latency.max"), before = than.stat("frame.latency.max"), rate = steady_rate(r);
+  const auto late = r.stat(names::kLatencyMax), before = than.stat(names::kLatencyMax), rate = steady_rate(r);
   if (!late || !before || !rate || (*late - *before) * *rate < 0.5) return "";
   return fmt::format("; frames are shown {} after their capture, {} later than with {}, as the loop has slipped",
                      app::human_text(*late, "s"), app::human_text(*late - *before, "s"), name);

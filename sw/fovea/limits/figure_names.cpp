@@ -7,15 +7,16 @@
 
 #include "model/common/nearest.h"
 #include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/results/names.h"
 
 namespace fovea::limits {
 namespace {
 
 // Figures that a run without frames lacks. A test compares them with those of whole runs.
 constexpr std::array<std::string_view, 12> kWithFrames = {
-    "ddr.efficiency",       "frame.latency.max",     "frame.latency.mean",   "frame.latency.min",
-    "frame.rate",           "frame.remap_rate",      "frame.remap_time.max", "frame.remap_time.mean",
-    "frame.remap_time.min", "frame.repeated_relock", "startup.first_frame",  "startup.lut_time"};
+    names::kDdrEfficiency,       names::kLatencyMax,     names::kLatencyMean,   names::kLatencyMin,
+    names::kRate,           names::kRemapRate,      names::kRemapTimeMax, names::kRemapTimeMean,
+    names::kRemapTimeMin, names::kRepeatedRelock, names::kStartupFirstFrame,  names::kStartupLutTime};
 constexpr std::array<std::string_view, 3> kGroupsWithFrames = {"camera.", "cpu.remap.", "quality."};
 
 bool comes_with_frames(std::string_view name) {

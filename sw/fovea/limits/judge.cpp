@@ -14,6 +14,7 @@
 #include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/files/safe_json.h"
 #include "sw/fovea/limits/figure_names.h"
+#include "sw/fovea/results/names.h"
 
 namespace fovea::limits {
 namespace {
@@ -42,7 +43,7 @@ double remaps_per_frame(const points::PointResult& r) {
 /// Remaps follow one another, so one that takes longer than a frame period on average leads to a dropped frame sooner
 /// or later, even if buffers have hidden it in a short window. Empty: it does not, or the run does not say.
 std::string slow_remaps(const points::PointResult& r) {
-  const auto rate = steady_rate(r), mean = r.stat("frame.remap_time.mean");
+  const auto rate = steady_rate(r), mean = r.stat(names::kRemapTimeMean);
   const double remaps = remaps_per_frame(r);
   if (!rate || !mean || *rate * remaps * *mean <= 1) return "";
   if (remaps > 1)
@@ -54,30 +55,30 @@ std::string slow_remaps(const points::PointResult& r) {
 
 /// Frames shown again for which the decoder's search for syncs is no reason.
 std::optional<double> late_frames(const points::PointResult& r) {
-  const auto repeated = r.stat("frame.repeated");
+  const auto repeated = r.stat(names::kRepeated);
   if (!repeated) return std::nullopt;
-  return *repeated - r.stat("frame.repeated_relock").value_or(0);
+  return *repeated - r.stat(names::kRepeatedRelock).value_or(0);
 }
 
 }  // namespace
 
 std::vector<Condition> default_conditions() {
-  return {{"frame.dropped", false, 0, "dropped frame", "", "no frame is dropped"},
-          {"frame.repeated", false, 0, "repeated frame", "frame.repeated_relock",
+  return {{names::kDropped, false, 0, "dropped frame", "", "no frame is dropped"},
+          {names::kRepeated, false, 0, "repeated frame", names::kRepeatedRelock,
            "none is shown twice, but by a loop that slips once or while the decoder looks for a camera's syncs", true},
-          {"capture.overflows", false, 0, "capture overflow", "", "no capture overflows"},
-          {"display.underflows", false, 0, "display underflow", "", "no display underflows"}};
+          {names::kCaptureOverflows, false, 0, "capture overflow", "", "no capture overflows"},
+          {names::kDisplayUnderflows, false, 0, "display underflow", "", "no display underflows"}};
 }
 
 std::optional<double> steady_rate(const points::PointResult& r) {
-  const auto rate = r.stat("frame.rate"), shown = r.stat("frame.displayed"), repeated = r.stat("frame.repeated");
+  const auto rate = r.stat(names::kRate), shown = r.stat(names::kDisplayed), repeated = r.stat(names::kRepeated);
   if (!rate || !shown || late_frames(r) != 1.0) return rate;
   const double fresh = *shown - *repeated;
   return fresh > 0 ? *rate * (fresh + 1) / fresh : *rate;
 }
 
 std::optional<double> slack(const points::PointResult& r) {
-  const auto rate = steady_rate(r), longest = r.stat("frame.remap_time.max");
+  const auto rate = steady_rate(r), longest = r.stat(names::kRemapTimeMax);
   if (!rate || !longest || *rate <= 0) return std::nullopt;
   return 1 - *longest * remaps_per_frame(r) * *rate;
 }
@@ -131,7 +132,7 @@ Verdict judge(const points::PointResult& result, const std::vector<Condition>& c
       found = true;
       double value = name == c.metric ? figure - result.stat(c.without).value_or(0) : figure;
       // A slip in the window takes a frame off its rate, one before the window does not.
-      if (may_slip && name == "frame.rate") value = steady_rate(result).value_or(value);
+      if (may_slip && name == names::kRate) value = steady_rate(result).value_or(value);
       const double bound = c.bound + (c.slip ? slips : 0u);
       if (!(c.at_least ? value < bound : value > bound)) continue;
       once = once || (c.slip && value == bound + 1);

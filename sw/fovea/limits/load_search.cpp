@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/results/names.h"
 
 namespace fovea::limits {
 namespace {
@@ -30,13 +31,13 @@ std::string first_capture(const points::PointResult& plain) {
 std::string start_limit(const points::PointResult& plain, const ParamSet& params) {
   constexpr double kLater = 1;
   const auto* own = dynamic_cast<const IntParam*>(params.find("run.start_limit"));
-  const auto first = plain.stat("startup.first_frame");
+  const auto first = plain.stat(names::kStartupFirstFrame);
   if (!own || !first || static_cast<double>((*own)()) * 1e-12 <= *first + kLater) return "";
   return fmt::format("run.start_limit={:.0f}ms", (*first + kLater) * 1e3);
 }
 
 double bytes_per_second(const points::PointResult& r, const std::string& port) {
-  const double window = r.stat("frame.window").value_or(0);
+  const double window = r.stat(names::kWindow).value_or(0);
   const double bytes = r.stat("bus." + port + ".read_bytes").value_or(0) +
                        r.stat("bus." + port + ".write_bytes").value_or(0);
   return window > 0 ? bytes / window : 0;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sw/fovea/limits/answers.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/outputs.h"
 
 namespace fovea::limits {
@@ -50,12 +51,12 @@ std::vector<std::string> over_cells(const Study& study, bool keys) {
 }
 
 void add_result(const points::PointResult& r, std::vector<std::string>& row) {
-  row.insert(row.end(), {number(r.stat("frame.rate")), number(r.stat("frame.remap_time.mean")),
-                         number(r.stat("frame.remap_time.max")), number(r.stat("ddr.utilisation")),
-                         number(r.stat("frame.latency.max")), number(slack(r))});
+  row.insert(row.end(), {number(r.stat(names::kRate)), number(r.stat(names::kRemapTimeMean)),
+                         number(r.stat(names::kRemapTimeMax)), number(r.stat(names::kDdrUtilisation)),
+                         number(r.stat(names::kLatencyMax)), number(slack(r))});
 }
-constexpr const char* kResult[] = {"frame.rate",      "frame.remap_time.mean", "frame.remap_time.max",
-                                   "ddr.utilisation", "frame.latency.max",     "left_of_frame_period"};
+constexpr const char* kResult[] = {names::kRate,      names::kRemapTimeMean, names::kRemapTimeMax,
+                                   names::kDdrUtilisation, names::kLatencyMax,     "left_of_frame_period"};
 
 struct SearchRow {
   std::string what;

@@ -11,6 +11,7 @@
 #include "sw/fovea/compare/compare.h"
 #include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/regression/baseline.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/outputs.h"
 
 namespace fovea::regression {
@@ -29,27 +30,27 @@ struct Headline {
 };
 /// Instructions and row conflicts are no costs: a program that waits by polling executes fewer of them when it is
 /// slower, and what conflicts cost is in the times.
-constexpr std::array kOfRun = std::to_array<Headline>({{"frame.rate", "lower", Rule::kCost},
-                                                       {"frame.dropped", "higher", Rule::kLoss},
-                                                       {"frame.repeated", "higher", Rule::kLoss},
-                                                       {"frame.remap_rate", "lower", Rule::kCost},
-                                                       {"frame.remap_time.mean", "higher", Rule::kCost},
-                                                       {"frame.remap_time.max", "higher", Rule::kCost},
-                                                       {"frame.latency.mean", "higher", Rule::kCost},
-                                                       {"frame.latency.max", "higher", Rule::kCost},
-                                                       {"startup.first_frame", "higher", Rule::kCost},
-                                                       {"startup.lut_time", "higher", Rule::kCost},
-                                                       {"capture.overflows", "higher", Rule::kLoss},
-                                                       {"display.underflows", "higher", Rule::kLoss},
-                                                       {"cpu.spare", "lower", Rule::kSpare},
-                                                       {"ddr.bus_bytes", "higher", Rule::kCost}});
+constexpr std::array kOfRun = std::to_array<Headline>({{names::kRate, "lower", Rule::kCost},
+                                                       {names::kDropped, "higher", Rule::kLoss},
+                                                       {names::kRepeated, "higher", Rule::kLoss},
+                                                       {names::kRemapRate, "lower", Rule::kCost},
+                                                       {names::kRemapTimeMean, "higher", Rule::kCost},
+                                                       {names::kRemapTimeMax, "higher", Rule::kCost},
+                                                       {names::kLatencyMean, "higher", Rule::kCost},
+                                                       {names::kLatencyMax, "higher", Rule::kCost},
+                                                       {names::kStartupFirstFrame, "higher", Rule::kCost},
+                                                       {names::kStartupLutTime, "higher", Rule::kCost},
+                                                       {names::kCaptureOverflows, "higher", Rule::kLoss},
+                                                       {names::kDisplayUnderflows, "higher", Rule::kLoss},
+                                                       {names::kCpuSpare, "lower", Rule::kSpare},
+                                                       {names::kDdrBusBytes, "higher", Rule::kCost}});
 /// A program that runs to its end, on the board or without it.
 constexpr std::array kOfProgram =
-    std::to_array<Headline>({{"cpu.cycles", "higher", Rule::kCost}, {"ddr.bus_bytes", "higher", Rule::kCost}});
+    std::to_array<Headline>({{names::kCpuCycles, "higher", Rule::kCost}, {names::kDdrBusBytes, "higher", Rule::kCost}});
 constexpr std::array kOfReplay = std::to_array<Headline>({{"replay.time", "higher", Rule::kCost},
-                                                          {"frame.remap_time.mean", "higher", Rule::kCost},
-                                                          {"frame.remap_time.max", "higher", Rule::kCost},
-                                                          {"ddr.bus_bytes", "higher", Rule::kCost}});
+                                                          {names::kRemapTimeMean, "higher", Rule::kCost},
+                                                          {names::kRemapTimeMax, "higher", Rule::kCost},
+                                                          {names::kDdrBusBytes, "higher", Rule::kCost}});
 
 std::vector<Headline> headlines_of(const RunFigures& run) {
   const auto list = [](const auto& rows) { return std::vector<Headline>(rows.begin(), rows.end()); };
@@ -76,7 +77,7 @@ double largest_deviation(const Headline& h, const Metric& m, const std::vector<R
 }
 
 /// The clocks in which the core was busy; of the clocks that are left, the same share is another one.
-double busy_clocks(const RunFigures& run) { return run.value("cpu.cycles") - run.value("cpu.spare"); }
+double busy_clocks(const RunFigures& run) { return run.value(names::kCpuCycles) - run.value(names::kCpuSpare); }
 
 std::string tolerance_of(const Headline& h, const Metric& m, const FirstBaseline& first) {
   if (h.rule == Rule::kLoss || !m.value) return "";

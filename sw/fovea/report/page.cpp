@@ -71,7 +71,8 @@ std::string report_page(const std::vector<Results>& runs) {
       kStart, script_digest(script), escaped(title), kStyle);
   out += fmt::format(
       "<a class=\"skip\" href=\"#verdict\">Skip to the verdict</a>\n<header><h1>{}</h1>"
-      "<div id=\"controls\"></div></header>\n<div role=\"region\" aria-label=\"System\">{}</div>"
+      "<div id=\"controls\"></div></header>\n<section aria-labelledby=\"system-title\">"
+      "<h2 id=\"system-title\" class=\"unseen\">System</h2>{}</section>\n"
       "<nav aria-label=\"Sections\"><ul>",
       escaped(title), system_section(runs));
   for (const auto& s : sections)

@@ -12,6 +12,7 @@
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/page.h"
 #include "sw/fovea/report/sections.h"
+#include "sw/fovea/results/names.h"
 
 namespace fovea::report {
 namespace {
@@ -53,7 +54,7 @@ std::string rate_cell(double bytes, double seconds) {
 }
 
 std::string bandwidth_table(const Results& run) {
-  const auto window = run.value("frame.window");
+  const auto window = run.value(names::kWindow);
   Table table("Bytes of each master in the measured window",
               {"Master", "#Read", "#Written", "#MB/s read", "#MB/s written", "#Requests"});
   for (const auto& m : masters_of(run, "bus.", ".transactions")) {
@@ -154,7 +155,7 @@ std::string stalls_table(const Results& run) {
   for (const auto& r : rows)
     table.row({escaped(explain::waits_for(r.cause)), escaped(r.cause), escaped(r.region),
                escaped(r.culprit), clocks_cell(static_cast<double>(r.cycles)),
-               percent_cell(static_cast<double>(r.cycles), run.value("cpu.cycles").value_or(0))});
+               percent_cell(static_cast<double>(r.cycles), run.value(names::kCpuCycles).value_or(0))});
   return table.html();
 }
 
@@ -327,7 +328,7 @@ std::string latency_section(const Runs& runs) {
 std::string stalls_section(const Runs& runs) {
   std::string out = panels(runs, [&](std::size_t i) {
     const auto& run = runs[i];
-    if (run.value("cpu.cycles").value_or(0) == 0)
+    if (run.value(names::kCpuCycles).value_or(0) == 0)
       return absent("No core ran, so there are no clocks of it to account for.");
     std::string inside =
         chart("waterfall", i,
@@ -339,8 +340,8 @@ std::string stalls_section(const Runs& runs) {
            "</details>";
   });
   for (std::size_t i = 1; i < runs.size(); ++i)
-    if (runs[0].value("frame.remapped").value_or(0) > 0 &&
-        runs[i].value("frame.remapped").value_or(0) > 0)
+    if (runs[0].value(names::kRemapped).value_or(0) > 0 &&
+        runs[i].value(names::kRemapped).value_or(0) > 0)
       out += chart("waterfall-difference", i,
                    fmt::format("Clocks of the core for each corrected frame: {} less A, by cause.",
                                run_label(i)));

@@ -10,6 +10,7 @@
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/page.h"
 #include "sw/fovea/report/sections.h"
+#include "sw/fovea/results/names.h"
 
 namespace fovea::report {
 namespace {
@@ -75,7 +76,7 @@ std::string system_text(const Results& run) {
   if (!run.kernel.empty())
     out += fmt::format(" Its loop is the kernel {}{}.", run.kernel,
                        asked == run.kernel ? std::string() : fmt::format(" (firmware.kernel: {})", asked));
-  if (run.value("frame.remap_time.mean"))
+  if (run.value(names::kRemapTimeMean))
     out +=
         " A remap is the correction of one captured frame: a look-up table says, for the pixels of the display, "
         "which pixels of the camera's picture to take.";
@@ -118,7 +119,7 @@ void name_apart(Runs& runs) {
 }
 
 std::string binds_command_of(const Results& run) {
-  if (run.command != "run" || run.value("frame.remap_time.mean").value_or(0) <= 0) return "";
+  if (run.command != "run" || run.value(names::kRemapTimeMean).value_or(0) <= 0) return "";
   return explain::binds_command(file_of(run), sets_of(run));
 }
 

@@ -10,36 +10,37 @@
 #include "sw/fovea/explain/command.h"
 #include "sw/fovea/report/html.h"
 #include "sw/fovea/report/page.h"
+#include "sw/fovea/results/names.h"
 
 namespace fovea::report {
 namespace {
 
-constexpr std::array kKeyFigures{"frame.rate",
-                                 "frame.displayed",
-                                 "frame.repeated",
-                                 "frame.dropped",
-                                 "frame.remap_time.mean",
-                                 "frame.remap_time.min",
-                                 "frame.remap_time.max",
-                                 "frame.latency.mean",
-                                 "frame.latency.min",
-                                 "frame.latency.max",
-                                 "startup.lut_time",
-                                 "capture.overflows",
-                                 "display.underflows",
-                                 "cpu.cycles",
-                                 "cpu.instructions",
-                                 "cpu.spare",
-                                 "ddr.utilisation",
-                                 "ddr.efficiency",
-                                 "ddr.read_bytes",
-                                 "ddr.write_bytes",
+constexpr std::array kKeyFigures{names::kRate,
+                                 names::kDisplayed,
+                                 names::kRepeated,
+                                 names::kDropped,
+                                 names::kRemapTimeMean,
+                                 names::kRemapTimeMin,
+                                 names::kRemapTimeMax,
+                                 names::kLatencyMean,
+                                 names::kLatencyMin,
+                                 names::kLatencyMax,
+                                 names::kStartupLutTime,
+                                 names::kCaptureOverflows,
+                                 names::kDisplayUnderflows,
+                                 names::kCpuCycles,
+                                 names::kCpuInstructions,
+                                 names::kCpuSpare,
+                                 names::kDdrUtilisation,
+                                 names::kDdrEfficiency,
+                                 names::kDdrReadBytes,
+                                 names::kDdrWriteBytes,
                                  "replay.time",
                                  "replay.bandwidth"};
 
 /// Large on top of a single run's page.
-constexpr std::array kTiles{"frame.rate", "frame.remap_time.mean", "frame.latency.mean",
-                            "ddr.utilisation"};
+constexpr std::array kTiles{names::kRate, names::kRemapTimeMean, names::kLatencyMean,
+                            names::kDdrUtilisation};
 
 std::string text_of(const app::StatRow& figure) {
   return app::human_text(figure.value, figure.unit);
@@ -51,7 +52,7 @@ double as_double(const app::StatRow& figure) {
 
 bool missed(const Results& run) {
   for (const auto* name :
-       {"frame.repeated", "frame.dropped", "capture.overflows", "display.underflows"})
+       {names::kRepeated, names::kDropped, names::kCaptureOverflows, names::kDisplayUnderflows})
     if (run.value(name).value_or(0) > 0) return true;
   return false;
 }

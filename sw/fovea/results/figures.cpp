@@ -3,18 +3,20 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include "sw/fovea/results/names.h"
+
 namespace fovea::app {
 
 void add_ddr_shares(std::vector<StatRow>& rows, const DdrSpan& of, std::string_view span) {
   const auto busy = static_cast<double>(of.busy), queued = static_cast<double>(of.queued);
-  rows.push_back({"ddr.utilisation", busy / of.clocks, "ratio",
+  rows.push_back({names::kDdrUtilisation, busy / of.clocks, "ratio",
                   fmt::format("share of {} in which the SDRAM's data bus moves data", span)});
-  rows.push_back({"ddr.headroom", 1 - queued / of.clocks, "ratio",
+  rows.push_back({names::kDdrHeadroom, 1 - queued / of.clocks, "ratio",
                   fmt::format("share of {} in which no request is queued at the SDRAM (not the "
                               "bandwidth left over)",
                               span)});
   if (of.queued > 0)
-    rows.push_back({"ddr.efficiency", busy / queued, "ratio",
+    rows.push_back({names::kDdrEfficiency, busy / queued, "ratio",
                     "clocks with data on the SDRAM's bus / clocks in which a request is queued"});
 }
 
@@ -29,9 +31,9 @@ void add_latency_rows(std::vector<LatencyRow>& rows, const std::string& master,
 
 void add_remap_times(std::vector<StatRow>& rows, double shortest, double mean, double longest) {
   const std::string what = "time to correct (remap) one frame, ";
-  rows.push_back({"frame.remap_time.min", shortest, "s", what + "shortest"});
-  rows.push_back({"frame.remap_time.mean", mean, "s", what + "mean"});
-  rows.push_back({"frame.remap_time.max", longest, "s", what + "longest"});
+  rows.push_back({names::kRemapTimeMin, shortest, "s", what + "shortest"});
+  rows.push_back({names::kRemapTimeMean, mean, "s", what + "mean"});
+  rows.push_back({names::kRemapTimeMax, longest, "s", what + "longest"});
 }
 
 StatRow wall_time(double seconds, std::string_view what) {

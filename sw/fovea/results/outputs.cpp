@@ -9,6 +9,7 @@
 #include <set>
 
 #include "sw/fovea/files/warnings.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/run_dir.h"
 
 namespace fovea::app {
@@ -93,9 +94,9 @@ std::uint64_t count_of(std::span<const StatRow> stats, const char* name) {
 /// Whether several remaps were made for each new frame on the display: the remap loop does not wait
 /// for the camera, and its own rate is the figure of the run.
 bool remaps_in_a_row(std::span<const StatRow> stats) {
-  const std::uint64_t displayed = count_of(stats, "frame.displayed");
-  const std::uint64_t fresh = displayed - std::min(count_of(stats, "frame.repeated"), displayed);
-  return fresh > 0 && 2 * count_of(stats, "frame.remapped") >= 3 * fresh;
+  const std::uint64_t displayed = count_of(stats, names::kDisplayed);
+  const std::uint64_t fresh = displayed - std::min(count_of(stats, names::kRepeated), displayed);
+  return fresh > 0 && 2 * count_of(stats, names::kRemapped) >= 3 * fresh;
 }
 
 }  // namespace
@@ -281,14 +282,14 @@ std::string human_text(const StatBase::Value& value, std::string_view unit) {
 
 std::string verdict(std::span<const StatRow> stats) {
   const auto count = [&](const char* name) { return count_of(stats, name); };
-  const StatRow* rate = find(stats, "frame.rate");
-  const std::uint64_t displayed = count("frame.displayed"), repeated = count("frame.repeated");
-  if (displayed == 0 || !rate || !find(stats, "frame.repeated")) return "";
+  const StatRow* rate = find(stats, names::kRate);
+  const std::uint64_t displayed = count(names::kDisplayed), repeated = count(names::kRepeated);
+  if (displayed == 0 || !rate || !find(stats, names::kRepeated)) return "";
   const std::uint64_t fresh = displayed - std::min(repeated, displayed);
-  const std::uint64_t dropped = count("frame.dropped");
+  const std::uint64_t dropped = count(names::kDropped);
   const auto some = [](std::uint64_t n) { return n ? std::to_string(n) : std::string("none"); };
   // The camera sends one frame for each displayed frame.
-  const StatRow* remap_rate = find(stats, "frame.remap_rate");
+  const StatRow* remap_rate = find(stats, names::kRemapRate);
   std::string out;
   if (remap_rate && remaps_in_a_row(stats))
     out = fmt::format("remaps in a row: {:.4g} a second; ", std::get<double>(remap_rate->value));
@@ -300,8 +301,8 @@ std::string verdict(std::span<const StatRow> stats) {
     out += fmt::format("{}: {} of {} frames shown ({:.4g} a second), {} dropped, {} repeated",
                        repeated || dropped ? "frame rate missed" : "frame rate met", fresh, displayed,
                        std::get<double>(rate->value), some(dropped), some(repeated));
-  for (const auto& [name, what] : {std::pair("capture.overflows", "capture overflow"),
-                                   std::pair("display.underflows", "display underflow")})
+  for (const auto& [name, what] : {std::pair(names::kCaptureOverflows, "capture overflow"),
+                                   std::pair(names::kDisplayUnderflows, "display underflow")})
     if (const std::uint64_t n = count(name))
       out += fmt::format(", {} {}{}", n, what, n > 1 ? "s" : "");
   return out + "\n";

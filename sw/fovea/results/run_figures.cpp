@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/common/nearest.h"
+#include "sw/fovea/results/names.h"
 #include "sw/fovea/results/outputs.h"
 #include "sw/fovea/results/stored_run.h"
 
@@ -40,7 +41,7 @@ std::string RunFigures::simulator() const {
 }
 
 bool RunFigures::has_frames() const {
-  return subject.kind != ResultKind::kExec && (metric("frame.rate") || metric("frame.remap_time.mean"));
+  return subject.kind != ResultKind::kExec && (metric(names::kRate) || metric(names::kRemapTimeMean));
 }
 
 std::string RunFigures::input_hash() const {
