@@ -18,7 +18,7 @@ extern "C" {
 #define PARAM_ASSERT(condition) _Static_assert(condition, #condition)
 #endif
 
-#define PARAM_CONSTANT(constant, code, word) constant = (code),
+#define PARAM_CONSTANT(constant, code, ...) constant = (code),
 
 #define PARAM_PAGE_MAGIC 0x41564F46u /* bytes "FOVA" */
 #define PARAM_PAGE_VERSION 5u        /* changes with every change of the layout or of a meaning */
@@ -40,46 +40,32 @@ enum lens_mapping { PARAM_MAPPINGS(PARAM_CONSTANT) };
   X(PAIR_CENTRE, 1, "B")
 enum param_pair_method { PARAM_PAIR_METHODS(PARAM_CONSTANT) };
 
-/* How a frame is remapped (sw/firmware/README.md). All but three give the same picture: `copy` does not correct;
- * `engine_grid` and `engine_radial` follow the lens, but not its table.
- * Those after `ldm` read a form of the look-up table that the firmware derives from it at the start; if the table of
- * a lens has no such form, or the chip no remap engine, the firmware says so and takes another one. */
-#define PARAM_KERNELS(X)               \
-  X(KERNEL_PLAIN, 0, "plain")          \
-  X(KERNEL_LDM, 1, "ldm")              \
-  X(KERNEL_STRIPS, 2, "strips")        \
-  X(KERNEL_OFFSETS, 3, "offsets16")    \
-  X(KERNEL_DELTAS, 4, "deltas4")       \
-  X(KERNEL_CODES, 5, "codes")          \
-  X(KERNEL_STAGED, 6, "staged")        \
-  X(KERNEL_GATHER, 7, "gather")        \
-  X(KERNEL_RUNS, 8, "runs")            \
-  X(KERNEL_COPY, 9, "copy")            \
-  X(KERNEL_FASTEST, 10, "fastest")     \
-  X(KERNEL_ENGINE, 11, "engine")       \
-  X(KERNEL_ENGINE_GRID, 12, "engine_grid") \
-  X(KERNEL_ENGINE_RADIAL, 13, "engine_radial")
-enum param_kernel { PARAM_KERNELS(PARAM_CONSTANT) };
+/* Who moves a kernel's pixels; of `fastest`, which is none itself, the kernel in its place says that. */
+enum param_mover { PARAM_BY_CORE, PARAM_BY_EDMA, PARAM_BY_ENGINE };
 
-/* The kernel that the firmware takes in place of one that the lens or the chip does not allow, for a single view: X(it,
- * the other). The last one of such a chain fits every lens and refers to itself. */
-#define PARAM_KERNEL_FALLBACKS(X)        \
-  X(KERNEL_PLAIN, KERNEL_PLAIN)          \
-  X(KERNEL_LDM, KERNEL_LDM)              \
-  X(KERNEL_STRIPS, KERNEL_STRIPS)        \
-  X(KERNEL_OFFSETS, KERNEL_STRIPS)       \
-  X(KERNEL_DELTAS, KERNEL_OFFSETS)       \
-  X(KERNEL_CODES, KERNEL_DELTAS)         \
-  X(KERNEL_STAGED, KERNEL_CODES)         \
-  X(KERNEL_GATHER, KERNEL_CODES)         \
-  X(KERNEL_RUNS, KERNEL_CODES)           \
-  X(KERNEL_COPY, KERNEL_CODES)           \
-  X(KERNEL_FASTEST, KERNEL_STAGED)       \
-  X(KERNEL_ENGINE, KERNEL_STAGED)        \
-  X(KERNEL_ENGINE_GRID, KERNEL_STAGED)   \
-  X(KERNEL_ENGINE_RADIAL, KERNEL_STAGED)
-#define PARAM_KERNEL_OTHERWISE(kernel, otherwise) kernel##_OTHERWISE = otherwise,
-enum param_kernel_otherwise { PARAM_KERNEL_FALLBACKS(PARAM_KERNEL_OTHERWISE) };
+/* How a frame is remapped (sw/firmware/README.md): X(constant, code, word, who moves the pixels, the kernel that the
+ * firmware takes in its place where lens or chip do not allow it, whether it has a form for several sources). All but
+ * three give the same picture: `copy` does not correct; `engine_grid` and `engine_radial` follow the lens, but not its
+ * table. Those after `ldm` read a form of the look-up table that the firmware derives from it at the start. The last one
+ * of a chain fits every lens and refers to itself. */
+#define PARAM_KERNELS(X)                                                          \
+  X(KERNEL_PLAIN, 0, "plain", PARAM_BY_CORE, KERNEL_PLAIN, 1)                     \
+  X(KERNEL_LDM, 1, "ldm", PARAM_BY_CORE, KERNEL_LDM, 1)                           \
+  X(KERNEL_STRIPS, 2, "strips", PARAM_BY_CORE, KERNEL_STRIPS, 1)                  \
+  X(KERNEL_OFFSETS, 3, "offsets16", PARAM_BY_CORE, KERNEL_STRIPS, 0)              \
+  X(KERNEL_DELTAS, 4, "deltas4", PARAM_BY_CORE, KERNEL_OFFSETS, 0)                \
+  X(KERNEL_CODES, 5, "codes", PARAM_BY_CORE, KERNEL_DELTAS, 0)                    \
+  X(KERNEL_STAGED, 6, "staged", PARAM_BY_EDMA, KERNEL_CODES, 0)                   \
+  X(KERNEL_GATHER, 7, "gather", PARAM_BY_EDMA, KERNEL_CODES, 0)                   \
+  X(KERNEL_RUNS, 8, "runs", PARAM_BY_EDMA, KERNEL_CODES, 0)                       \
+  X(KERNEL_COPY, 9, "copy", PARAM_BY_EDMA, KERNEL_CODES, 0)                       \
+  X(KERNEL_FASTEST, 10, "fastest", PARAM_BY_CORE, KERNEL_STAGED, 1)               \
+  X(KERNEL_ENGINE, 11, "engine", PARAM_BY_ENGINE, KERNEL_STAGED, 1)               \
+  X(KERNEL_ENGINE_GRID, 12, "engine_grid", PARAM_BY_ENGINE, KERNEL_STAGED, 0)     \
+  X(KERNEL_ENGINE_RADIAL, 13, "engine_radial", PARAM_BY_ENGINE, KERNEL_STAGED, 0)
+enum param_kernel { PARAM_KERNELS(PARAM_CONSTANT) };
+#define PARAM_KERNEL_OTHERWISE(kernel, code, word, mover, otherwise, views) kernel##_OTHERWISE = otherwise,
+enum param_kernel_otherwise { PARAM_KERNELS(PARAM_KERNEL_OTHERWISE) };
 
 /* The look-up tables of a run that measures the remap loop by itself: table k is that of the camera's view, moved to
  * the right by k * PARAM_TABLE_STEP_PX (lens_view_t, shift_x). The step is odd, so that the first pixels of the pairs

@@ -15,7 +15,7 @@ struct Word {
   std::uint32_t code;
 };
 
-#define FOVEA_WORD(constant, code, word) Word{word, code},
+#define FOVEA_WORD(constant, code, word, ...) Word{word, code},
 inline constexpr std::array kMappings = {PARAM_MAPPINGS(FOVEA_WORD)};
 inline constexpr std::array kPairMethods = {PARAM_PAIR_METHODS(FOVEA_WORD)};
 inline constexpr std::array kKernels = {PARAM_KERNELS(FOVEA_WORD)};
@@ -24,28 +24,30 @@ inline constexpr std::array kFlows = {PARAM_FLOWS(FOVEA_WORD)};
 inline constexpr std::array kMasterWords = {PARAM_MASTERS(FOVEA_WORD)};
 #undef FOVEA_WORD
 
-/// The kernel that is taken in place of this one; itself at the end of a chain.
-constexpr std::uint32_t fallback_of(std::uint32_t kernel) {
-  constexpr std::uint32_t kTaken[][2] = {
-#define FOVEA_FALLBACK(one, otherwise) {one, otherwise},
-      PARAM_KERNEL_FALLBACKS(FOVEA_FALLBACK)
-#undef FOVEA_FALLBACK
-  };
-  for (const auto& row : kTaken)
-    if (row[0] == kernel) return row[1];
-  return kernel;
-}
-/// Kernels whose pixels the remap engine computes, and ones in which the EDMA moves pixels.
-constexpr bool needs_engine(std::uint32_t kernel) {
-  return kernel == KERNEL_ENGINE || kernel == KERNEL_ENGINE_GRID || kernel == KERNEL_ENGINE_RADIAL;
-}
-constexpr bool uses_edma(std::uint32_t kernel) {
-  return kernel == KERNEL_STAGED || kernel == KERNEL_GATHER || kernel == KERNEL_RUNS || kernel == KERNEL_COPY;
-}
+/// What is known of a kernel (PARAM_KERNELS).
+struct KernelFacts {
+  std::uint32_t code;
+  param_mover mover;        ///< who moves its pixels
+  std::uint32_t otherwise;  ///< the kernel that is taken in its place; itself at the end of a chain
+  bool views;               ///< it has a form for several sources
+};
+inline constexpr std::array kKernelFacts = {
+#define FOVEA_FACTS(constant, code, word, mover, otherwise, views) KernelFacts{code, mover, otherwise, views != 0},
+    PARAM_KERNELS(FOVEA_FACTS)
+#undef FOVEA_FACTS
+};
+constexpr const KernelFacts& facts_of(std::uint32_t kernel) { return kKernelFacts[kernel]; }
+static_assert([] {
+  for (std::size_t k = 0; k < kKernelFacts.size(); ++k)
+    if (kKernelFacts[k].code != k || kKernelFacts[k].otherwise >= kKernelFacts.size()) return false;
+  return true;
+}());
+
 /// Whether the EDMA may move pixels if this kernel is asked for.
 constexpr bool may_use_edma(std::uint32_t kernel) {
-  for (;; kernel = fallback_of(kernel))
-    if (uses_edma(kernel) || fallback_of(kernel) == kernel) return uses_edma(kernel);
+  for (;; kernel = facts_of(kernel).otherwise)
+    if (facts_of(kernel).mover == PARAM_BY_EDMA || facts_of(kernel).otherwise == kernel)
+      return facts_of(kernel).mover == PARAM_BY_EDMA;
 }
 
 /// The words alone, for a parameter that takes them.

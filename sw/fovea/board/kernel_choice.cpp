@@ -22,17 +22,24 @@ std::string_view word_of(std::uint32_t kernel) {
   return {};
 }
 
-bool has_form_for_views(std::uint32_t kernel) {
-  return kernel == KERNEL_PLAIN || kernel == KERNEL_LDM || kernel == KERNEL_STRIPS || kernel == KERNEL_FASTEST ||
-         kernel == KERNEL_ENGINE;
+bool needs_engine(const board::BoardParams& params) {
+  return contract::facts_of(kernel_code(params)).mover == PARAM_BY_ENGINE;
+}
+
+/// The words of the engine's kernels, of those with a form for several sources if `views`.
+std::vector<std::string_view> kernels_of_engine(bool views) {
+  std::vector<std::string_view> out;
+  for (const contract::KernelFacts& k : contract::kKernelFacts)
+    if (k.mover == PARAM_BY_ENGINE && (k.views || !views)) out.push_back(word_of(k.code));
+  return out;
 }
 
 /// What the program takes instead; empty: nothing is known against the kernel.
 std::string_view replaced_by(const board::BoardParams& params) {
-  const std::uint32_t kernel = kernel_code(params);
-  const bool missing = contract::needs_engine(kernel) && !params.soc.engine.present();
-  if (!params.firmware.view.is("single")) return missing || !has_form_for_views(kernel) ? "strips" : "";
-  return missing ? word_of(contract::fallback_of(kernel)) : "";
+  const contract::KernelFacts& kernel = contract::facts_of(kernel_code(params));
+  const bool missing = needs_engine(params) && !params.soc.engine.present();
+  if (!params.firmware.view.is("single")) return missing || !kernel.views ? word_of(KERNEL_STRIPS) : "";
+  return missing ? word_of(kernel.otherwise) : "";
 }
 
 }  // namespace
@@ -42,8 +49,8 @@ void check_kernel(const board::BoardParams& params) {
   const EnumParam &kernel = params.firmware.kernel, &view = params.firmware.view, &engine = params.soc.engine.kind;
   auto& diagnostics = Diagnostics::instance();
   const std::string_view instead = replaced_by(params);
-  const bool computes = contract::needs_engine(kernel_code(params)) && instead.empty();
-  if (!instead.empty() && contract::needs_engine(kernel_code(params)) && !params.soc.engine.present())
+  const bool computes = needs_engine(params) && instead.empty();
+  if (!instead.empty() && needs_engine(params) && !params.soc.engine.present())
     diagnostics.configuration(fmt::format("{}={} needs the remap engine, and {} = {}: the program takes {}",
                                           kernel.key(), kernel(), engine.key(), engine(), instead));
   else if (!instead.empty())
@@ -53,7 +60,7 @@ void check_kernel(const board::BoardParams& params) {
   if (params.soc.engine.present() && !computes)
     diagnostics.configuration(
         fmt::format("{}={} has nothing to do: {} = {} uses the core; kernels of the engine: {}", engine.key(), engine(),
-                    kernel.key(), kernel(), view.is("single") ? "engine, engine_grid, engine_radial" : "engine"));
+                    kernel.key(), kernel(), fmt::join(kernels_of_engine(!view.is("single")), ", ")));
 }
 
 std::string kernel_that_ran(const board::BoardParams& params, std::string_view uart) {
