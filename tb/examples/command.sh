@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # The command of model/howto/add-a-command.md, in a program that has its source and its row: help, completion, a run's
 # figure, an error of one line.
-# Usage: command.sh FOVEA_WITH_IT FOVEA SOURCE OUT
+# Usage: command.sh FOVEA_WITH_IT FOVEA OUT
 set -uo pipefail
-with=$1 fovea=$2 source=$3 out=$4
+with=$1 fovea=$2 out=$3
 rm -rf "$out"
 mkdir -p "$out"
 cd "$out" || exit 1

@@ -107,7 +107,9 @@ std::vector<explain::Finding> binds_findings(const std::vector<Relaxed>& rows) {
   return out;
 }
 
-std::string binds_section(const std::vector<Relaxed>& rows) {
+std::string binds_section(const Runs& runs) {
+  const std::vector<Relaxed>& rows = runs.front().binds;
+  if (rows.empty()) return {};
   Table table("Resources that were relaxed, one at a time; one binds if the figure gets more than 2 % better",
               {"Resource", "Binds", "#Better by", "Figure", "#Before", "#Relaxed", "By", "Settings", "Believed"});
   const auto cell = [](const std::optional<double>& v, const std::string& unit) {

@@ -29,7 +29,4 @@ std::vector<Relaxed> load_binds(const std::filesystem::path& folder, const Resul
 /// "What binds ...": the finding that runs support; no rows give none.
 std::vector<explain::Finding> binds_findings(const std::vector<Relaxed>& rows);
 
-/// The rows as a table.
-std::string binds_section(const std::vector<Relaxed>& rows);
-
 }  // namespace fovea::report

@@ -20,11 +20,6 @@ constexpr std::string_view kStart =
 /// A page is below 3 MB; pictures get what text and charts leave, and something in any case.
 constexpr std::size_t kPageBytes = 2'900'000, kLeastPictureBytes = 400'000;
 
-struct Section {
-  const char *id, *title;
-  std::string html;
-};
-
 std::string data_json(const std::vector<Results>& runs) {
   nlohmann::ordered_json data{{"format", "fovea report 1"},
                               {"words", words_json()},
@@ -43,25 +38,13 @@ bool is_report_page(std::string_view first_bytes) { return first_bytes.starts_wi
 std::string report_page(const std::vector<Results>& runs) {
   std::string title;
   for (const auto& run : runs) title += (title.empty() ? "" : "; ") + run.name;
-  std::vector<Section> sections{{"verdict", "Verdict", verdict_section(runs)},
-                                {"pictures", "Pictures", ""},
-                                {"key", "Key figures", key_figures_section(runs)},
-                                {"frames", "Frames over time", frames_section(runs)},
-                                {"bandwidth", "Bandwidth", bandwidth_section(runs)},
-                                {"latency", "SDRAM latency", latency_section(runs)},
-                                {"stalls", "The core's clocks", stalls_section(runs)},
-                                {"banks", "SDRAM banks", banks_section(runs)},
-                                {"functions", "Functions", profile_section(runs)},
-                                {"configuration", "Configuration", configuration_section(runs)},
-                                {"figures", "All figures", figures_section(runs)},
-                                {"provenance", "Provenance", provenance_section(runs)}};
-  if (!runs.front().binds.empty())
-    sections.insert(sections.begin() + 2, {"binds", "What binds", binds_section(runs.front().binds)});
+  std::vector<Section> sections = sections_of(runs);
   const std::string script(kScript), data = data_json(runs);
   std::size_t used = script.size() + data.size() + kStyle.size();
   for (const auto& s : sections) used += s.html.size();
   const std::size_t left = std::max(kPageBytes - std::min(used, kPageBytes), kLeastPictureBytes);
-  sections[1].html = pictures_section(runs, choose_pictures(runs, left));
+  for (Section& s : sections)
+    if (std::string_view(s.id) == "pictures") s.html = pictures_section(runs, choose_pictures(runs, left));
   std::string out = fmt::format(
       "{}<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
       "style-src 'unsafe-inline'; script-src '{}'\">\n"

@@ -358,7 +358,7 @@ std::string banks_section(const Runs& runs) {
   });
 }
 
-std::string profile_section(const Runs& runs) {
+std::string functions_section(const Runs& runs) {
   const bool any =
       std::any_of(runs.begin(), runs.end(), [](const Results& r) { return r.profile.has_value(); });
   std::string out = any ? function_table(runs)

@@ -338,7 +338,7 @@ std::string verdict_section(const Runs& runs) {
   return out + findings(runs);
 }
 
-std::string key_figures_section(const Runs& runs) {
+std::string key_section(const Runs& runs) {
   std::vector<std::string> headings{"Figure"};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     headings.push_back("#" + (runs.size() == 1 ? "Value" : title_of(runs, i)));

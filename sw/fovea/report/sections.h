@@ -13,19 +13,15 @@ namespace fovea::report {
 
 using Runs = std::vector<Results>;
 
-/// Verdict and findings.
-std::string verdict_section(const Runs& runs);
-std::string key_figures_section(const Runs& runs);
+/// A section of the page: the word in its address, its heading, its HTML.
+struct Section {
+  const char *id, *title;
+  std::string html;
+};
+/// All sections, in the order of the page, without those that have nothing to show (page_sections.cpp). The one of the
+/// pictures is empty: how much room they have is known last.
+std::vector<Section> sections_of(const Runs& runs);
 std::string pictures_section(const Runs& runs, const std::vector<RunPictures>& pictures);
-std::string frames_section(const Runs& runs);
-std::string bandwidth_section(const Runs& runs);
-std::string latency_section(const Runs& runs);
-std::string stalls_section(const Runs& runs);
-std::string banks_section(const Runs& runs);
-std::string profile_section(const Runs& runs);
-std::string configuration_section(const Runs& runs);
-std::string figures_section(const Runs& runs);
-std::string provenance_section(const Runs& runs);
 
 /// Clocks of each function in the frames of a run; those of the whole run if it has no frames.
 std::vector<explain::FunctionClocks> functions_of(const Results& run);
