@@ -44,10 +44,10 @@ enum param_pair_method { PARAM_PAIR_METHODS(PARAM_CONSTANT) };
 enum param_mover { PARAM_BY_CORE, PARAM_BY_EDMA, PARAM_BY_ENGINE };
 
 /* How a frame is remapped (sw/firmware/README.md): X(constant, code, word, who moves the pixels, the kernel that the
- * firmware takes in its place where lens or chip do not allow it, whether it has a form for several sources). All but
- * three give the same picture: `copy` does not correct; `engine_grid` and `engine_radial` follow the lens, but not its
- * table. Those after `ldm` read a form of the look-up table that the firmware derives from it at the start. The last
- * one of a chain fits every lens and refers to itself. */
+ * firmware takes in its place where lens or chip do not allow it (of several sources: `strips`), whether it has a form
+ * for several sources). All but three give the same picture: `copy` does not correct; `engine_grid` and
+ * `engine_radial` follow the lens, but not its table. Those after `ldm` read a form of the look-up table that the
+ * firmware derives from it at the start. The last one of a chain fits every lens and refers to itself. */
 #define PARAM_KERNELS(X)                                                          \
   X(KERNEL_PLAIN, 0, "plain", PARAM_BY_CORE, KERNEL_PLAIN, 1)                     \
   X(KERNEL_LDM, 1, "ldm", PARAM_BY_CORE, KERNEL_LDM, 1)                           \

@@ -7,6 +7,7 @@
 #include <systemc>
 
 #include "model/board/board_params.h"
+#include "model/contract/words.h"
 #include "sw/fovea/board/loader.h"
 #include "sw/fovea/board/parameter_page.h"
 #include "sw/lens/lens.h"
@@ -176,9 +177,11 @@ TEST(EffectsTest, PortsWithoutALoadAreIdle) {
   const Keys load{{"load.2.port", "edma_tc1"}, {"load.2.outstanding", "1"}};
   EXPECT_TRUE(effective(load, "bus.edma_tc1.width"));
   EXPECT_FALSE(effective(load, "bus.edma_tc2.width"));
-  // Of all kernels: kernel_keys.sh, which asks their runs.
-  for (const char* key : {"bus.edma_tc1.width", "cpu.tcm.dma_word_clocks", "cpu.tcm.banks"})
-    EXPECT_TRUE(effective({{"firmware.kernel", "staged"}}, key)) << key;
+  // kernel_keys.sh asks the traffic of each kernel about one of these keys.
+  for (const contract::Word& kernel : contract::kKernels)
+    for (const char* key : {"bus.edma_tc1.width", "cpu.tcm.dma_word_clocks", "cpu.tcm.banks"})
+      EXPECT_EQ(effective({{"firmware.kernel", std::string(kernel.word)}}, key), contract::may_use_edma(kernel.code))
+          << kernel.word << " " << key;
   EXPECT_TRUE(effective({}, "priority.edma_tc0")) << "the firmware switches the EDMA on to write it";
   for (const char* key : {"cpu.tcm.dma_word_clocks", "cpu.tcm.banks"})
     EXPECT_FALSE(effective({{"firmware.kernel", "codes"}}, key)) << key;

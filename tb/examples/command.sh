@@ -11,7 +11,8 @@ fail() { echo "$*"; exit 1; }
 "$with" --help | grep -q '^  figure  *Print one figure' || fail "the help does not list the command"
 "$fovea" --help | grep -q '^  figure ' && fail "the program without the row has the command"
 "$with" man | grep -q 'fovea figure' || fail "the manual does not have the command"
-"$with" completion bash | grep -q 'figure' || fail "the completion does not know the command"
+"$with" completion bash | grep -q '^ *figure) options=' || fail "the completion does not know the command"
+"$fovea" completion bash | grep -q '^ *figure) options=' && fail "the completion of the program without it knows it"
 printf 'run: {frames: 1}\nvideo: {width: 48, height: 16}\ncamera: {kind: chart, stamp: false}\n' >small.yaml
 "$fovea" run small.yaml --no-frames -s run.until=time:6ms -o run >run.txt 2>&1 || fail "no results: $(<run.txt)"
 clocks=$(grep -o '"cpu.cycles": {"value": [0-9]*' run/stats.json | grep -o '[0-9]*$')

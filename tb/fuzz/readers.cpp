@@ -208,19 +208,19 @@ Result console(std::string_view bytes) {
 }
 
 constexpr Reader kReaders[] = {
-    {"experiment", "sw/fovea/(experiment|safe_yaml)", experiment},
-    {"calibration", "sw/fovea/(calibration|safe_yaml)", calibration},
-    {"baseline", "sw/fovea/regression/(baseline|bless|tolerance)\\.", baseline},
-    {"json", "sw/fovea/safe_json", json},
+    {"experiment", "sw/fovea/(config/experiment|files/safe_yaml)", experiment},
+    {"calibration", "sw/fovea/(config/calibration|files/safe_yaml)", calibration},
+    {"baseline", "sw/fovea/(regression/(baseline|bless)|compare/tolerance)\\.", baseline},
+    {"json", "sw/fovea/files/safe_json", json},
     {"table", "sw/fovea/results/(table_file|csv)", table},
     {"text_trace", "model/trace/core/(text_trace|line_reader)", text_trace},
     {"binary_trace", "model/trace/core/(trace_file|trace_code)", binary_trace},
     {"foreign_trace", "model/trace/core/(foreign_trace|line_reader)", foreign_trace},
-    {"elf", "sw/fovea/(elf_image|elf_target|source_lines|die_names)", elf},
-    {"png", "sw/fovea/png", png},
+    {"elf", "sw/fovea/program/(elf_image|elf_target|source_lines|die_names)", elf},
+    {"png", "sw/fovea/files/png", png},
     {"trend", "sw/fovea/regression/trend\\.", trend},
-    {"gdb", "sw/fovea/(gdb_packet|gdb_protocol)", gdb},
-    {"console", "sw/fovea/dialogue", console},
+    {"gdb", "sw/fovea/debug/(gdb_packet|gdb_protocol)", gdb},
+    {"console", "sw/fovea/console/dialogue", console},
     {"edma", "model/dma/core/(channel_controller|commands|edma_registers|param_set)", edma},
     {"engine", "model/engine/core/(engine_registers|tlm_backend|remap_job|remap_model|map_reader|packer)", engine},
 };

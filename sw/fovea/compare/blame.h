@@ -75,7 +75,7 @@ struct Difference {
   double seconds = 0;       ///< length of the second core's clock; 0: unknown
   Share total, busy, idle;
   std::vector<FunctionChange> functions;  ///< busy clocks; largest change first
-  std::vector<ClockOrigin> origins;            ///< of what comes from other code; largest change first
+  std::vector<ClockOrigin> origins;       ///< of what comes from other code; largest change first
   std::string moved_objects;              ///< "frame_out moved by +4,096 bytes"
   std::vector<std::string> notes;         ///< of the circumstances
   double unexplained = 0;                 ///< of the change of `total`, not in any row

@@ -14,9 +14,9 @@ namespace {
 
 // Figures that a run without frames lacks. A test compares them with those of whole runs.
 constexpr std::array<std::string_view, 12> kWithFrames = {
-    names::kDdrEfficiency,       names::kLatencyMax,     names::kLatencyMean,   names::kLatencyMin,
-    names::kRate,           names::kRemapRate,      names::kRemapTimeMax, names::kRemapTimeMean,
-    names::kRemapTimeMin, names::kRepeatedRelock, names::kStartupFirstFrame,  names::kStartupLutTime};
+    names::kDdrEfficiency, names::kLatencyMax,     names::kLatencyMean,       names::kLatencyMin,
+    names::kRate,          names::kRemapRate,      names::kRemapTimeMax,      names::kRemapTimeMean,
+    names::kRemapTimeMin,  names::kRepeatedRelock, names::kStartupFirstFrame, names::kStartupLutTime};
 constexpr std::array<std::string_view, 3> kGroupsWithFrames = {"camera.", "cpu.remap.", "quality."};
 
 bool comes_with_frames(std::string_view name) {

@@ -55,8 +55,8 @@ void add_result(const points::PointResult& r, std::vector<std::string>& row) {
                          number(r.stat(names::kRemapTimeMax)), number(r.stat(names::kDdrUtilisation)),
                          number(r.stat(names::kLatencyMax)), number(slack(r))});
 }
-constexpr const char* kResult[] = {names::kRate,      names::kRemapTimeMean, names::kRemapTimeMax,
-                                   names::kDdrUtilisation, names::kLatencyMax,     "left_of_frame_period"};
+constexpr const char* kResult[] = {names::kRate,           names::kRemapTimeMean, names::kRemapTimeMax,
+                                   names::kDdrUtilisation, names::kLatencyMax,    "left_of_frame_period"};
 
 struct SearchRow {
   std::string what;

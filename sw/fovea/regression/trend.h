@@ -26,7 +26,7 @@ struct TrendLine {
 
 /// An SQLite file with the table `runs`: a line for each commit and experiment, in the order in
 /// which they were first added. The column `figures` is a JSON object of values, for
-/// `json_extract(figures, '$.names::kRate')`; `units` holds their units.
+/// `json_extract(figures, '$."frame.rate"')`; `units` holds their units.
 class TrendFile {
  public:
   /// Opens or creates the file. @throws UserError if it is not one of Fovea's, or cannot be opened
