@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <random>
+#include <regex>
 #include <set>
 
 #include "model/common/check.h"
@@ -66,6 +68,25 @@ TEST(CorpusFoldersTest, EachIsThatOfAReader) {
   for (const auto& entry : fs::directory_iterator(CORPUS)) folders.insert(entry.path().filename().string());
   for (const Reader& reader : readers()) names.insert(reader.name);
   EXPECT_EQ(folders, names);
+}
+
+// What scripts/fuzz counts the coverage of: every alternative of the expression is the beginning of a source's name.
+TEST(CorpusFoldersTest, TheSourcesOfEachReaderAreThere) {
+  std::string sources;
+  for (const char* top : {"sw/fovea", "model"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(SOURCE) / top))
+      if (entry.path().extension() == ".cpp") sources += fs::relative(entry.path(), SOURCE).string() + "\n";
+  const std::regex group(R"((.*)\(([^()]*)\)(.*))"), alternative("[^|]+");
+  const std::function<void(const std::string&, const char*)> look = [&](const std::string& text, const char* reader) {
+    if (std::smatch m; std::regex_match(text, m, group)) {
+      const std::string words = m[2];
+      for (std::sregex_iterator at(words.begin(), words.end(), alternative), end; at != end; ++at)
+        look(m[1].str() + at->str() + m[3].str(), reader);
+      return;
+    }
+    EXPECT_TRUE(std::regex_search(sources, std::regex(text))) << reader << ": no source is called " << text;
+  };
+  for (const Reader& reader : readers()) look(reader.sources, reader.name);
 }
 
 Result throws(std::string_view) { throw std::runtime_error("a defect"); }
