@@ -28,6 +28,11 @@ sed "s/(strong/(stronger/; s/|part/|parted/" "$out/tiny/mutation.toml" > "$out/s
 [ "$(mutate --check --config "$out/stale.toml")" = 2 ] || fail "an area without a file is taken"
 grep -q 'area "strong": no file' "$out/log" || fail "the area without a file is not named"
 
+sed -i 's/even_sum/even_total/' "$out/tiny/equivalent.toml"
+[ "$(mutate --check)" = 2 ] || fail "an entry for a function that is not there is taken"
+grep -q 'no such place.*even_total' "$out/log" || fail "the function that is not there is not named"
+sed -i 's/even_total/even_sum/' "$out/tiny/equivalent.toml"
+
 [ "$(mutate)" = 1 ] || fail "status is not 1 with a weak area"
 row strong | grep -Eq '\| strong \| [0-9]+ \| 0 \| [01] \| 0 \| 100 % \|' || fail "strong tests do not kill all"
 row weak | grep -Eq '\| weak \| [0-9]+ \| [1-9][0-9]* \| 0 \| 0 \|' || fail "weak tests kill all"

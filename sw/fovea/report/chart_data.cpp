@@ -194,7 +194,7 @@ Json stack_tree(const std::vector<std::pair<std::string, std::uint64_t>>& stacks
   for (const auto& [stack, clocks] : stacks) {
     Node* node = &root;
     node->clocks += clocks;
-    const auto go = [&](std::string_view name) {
+    const auto go = [&node, clocks = clocks](std::string_view name) {
       node = &node->children[std::string(name)];
       node->clocks += clocks;
     };
