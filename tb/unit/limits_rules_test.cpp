@@ -1,4 +1,6 @@
 // The rules of `fovea limits`: how it searches, when a run has kept up, which replay is believed, its tables.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <random>
 #include <sstream>
