@@ -75,7 +75,8 @@ TEST(CorpusFoldersTest, TheSourcesOfEachReaderAreThere) {
   std::string sources;
   for (const char* top : {"sw/fovea", "model"})
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(SOURCE) / top))
-      if (const auto kind = entry.path().extension(); kind == ".cpp" || kind == ".h") sources += fs::relative(entry.path(), SOURCE).string() + "\n";
+      if (const auto kind = entry.path().extension(); kind == ".cpp" || kind == ".h")
+        sources += fs::relative(entry.path(), SOURCE).string() + "\n";
   const std::regex group(R"((.*)\(([^()]*)\)(.*))"), alternative("[^|]+");
   const std::function<void(const std::string&, const char*)> look = [&](const std::string& text, const char* reader) {
     if (std::smatch m; std::regex_match(text, m, group)) {
