@@ -9,6 +9,7 @@
 #include <systemc>
 
 #include "sw/fovea/cli/cli.h"
+#include "sw/fovea/probes/tool_rows.h"
 
 namespace {
 
@@ -42,8 +43,8 @@ int sc_main(int argc, char** argv) {
   CliContext context{.out = std::cout,
                      .err = std::cerr,
                      .terminal = ::isatty(STDERR_FILENO) == 1,
-                     .make_simulation = make_simulation,
-                     .make_executor = make_executor};
+                     .make_machine = make_machine,
+                     .tools = tool_rows()};
   install_signals(context);
   const int status = check_output(run_cli({argv + 1, argv + argc}, context));
   // Ends without destructors, whose order relative to those of the SystemC kernel is not defined.

@@ -7,6 +7,7 @@
 
 #include "model/engine/backends.h"
 #include "sw/fovea/cli/cli.h"
+#include "sw/fovea/probes/tool_rows.h"
 
 int sc_main(int argc, char** argv) {
   using namespace fovea::app;
@@ -14,8 +15,8 @@ int sc_main(int argc, char** argv) {
   fovea::engine::planted_difference = std::strtoull(argv[1], nullptr, 10);
   const CliContext context{.out = std::cout,
                            .err = std::cerr,
-                           .make_simulation = make_simulation,
-                           .make_executor = make_executor};
+                           .make_machine = make_machine,
+                           .tools = tool_rows()};
   const int status = run_cli({argv + 2, argv + argc}, context);
   std::cout.flush();
   std::cerr.flush();

@@ -19,7 +19,7 @@
 #include "model/video/scene/picture_quality.h"
 #include "model/video/scene/plan_score.h"
 #include "sw/fovea/files/ffmpeg.h"
-#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/machine/machine.h"
 #include "sw/fovea/results/outputs.h"
 
 namespace fovea::e2e {
@@ -53,36 +53,34 @@ struct Seen {
   }
 };
 
-app::RunResult run(const Keys& keys, bool strict = false, Picoseconds stop_at = kNever,
+app::Result run(const Keys& keys, bool strict = false, Picoseconds stop_at = kNever,
                    Seen* seen = nullptr) {
-  static auto simulation = app::make_simulation();
+  static auto machine = app::make_machine(app::MachineKind::kBoard);
   static ParamSet set;
-  simulation->declare(set);
+  machine->declare(set);
   set.set("camera.kind", "chart");
   set.set("camera.stamp", "false");
   set.set("ddr.check", "commands");
   set.set("firmware.elf", std::string(FOVEA_FIRMWARE_DIR) + "/fovea_firmware.elf");
   for (const auto& [key, value] : keys) set.set(key, value);
   StopAt progress(stop_at);
-  app::RunRequest request{.params = set,
-                          .folder = {},
-                          .strict_sync = strict,
-                          .stop = progress.stop,
-                          .progress = progress,
-                          .frame = {}};
+  app::Request request{.params = set,
+                       .stop = progress.stop,
+                       .progress = progress,
+                       .strict_sync = strict};
   if (seen) {
     request.frame = Seen::into(seen->displayed);
     request.camera = Seen::into(seen->sent);
   }
-  return simulation->run(request);
+  return machine->run(request);
 }
 
-std::uint64_t count(const app::RunResult& r, const std::string& name) {
+std::uint64_t count(const app::Result& r, const std::string& name) {
   const app::StatRow* row = app::find(r.stats, name);
   EXPECT_TRUE(row) << name;
   return row ? std::get<std::uint64_t>(row->value) : 0;
 }
-double real(const app::RunResult& r, const std::string& name) {
+double real(const app::Result& r, const std::string& name) {
   const app::StatRow* row = app::find(r.stats, name);
   EXPECT_TRUE(row) << name;
   return row ? std::get<double>(row->value) : 0;
@@ -90,7 +88,7 @@ double real(const app::RunResult& r, const std::string& name) {
 
 /// Every cycle has one cause and that one's cycles their culprits; every byte on the SDRAM has one
 /// master. No figure went below zero.
-void expect_conservation(const app::RunResult& r) {
+void expect_conservation(const app::Result& r) {
   std::map<std::string, std::uint64_t> by_culprit;
   for (const app::StatRow& row : r.stats) {
     const auto* n = std::get_if<std::uint64_t>(&row.value);
@@ -325,7 +323,7 @@ TEST_P(StoppedRunTest, StrictAndDefaultLeaveTheSame) {
 INSTANTIATE_TEST_SUITE_P(AtMs, StoppedRunTest, testing::Values(400, 405, 410, 415));
 
 /// A small mosaic of the car park, by cameras whose lenses are those of the tables.
-app::RunResult run_mosaic(unsigned frames, Seen* seen) {
+app::Result run_mosaic(unsigned frames, Seen* seen) {
   return run({{"firmware.elf", std::string(FOVEA_FIRMWARE_DIR) + "/fovea_views.elf"},
               {"cameras.count", "4"},
               {"camera.kind", "car_park"},
@@ -343,7 +341,7 @@ app::RunResult run_mosaic(unsigned frames, Seen* seen) {
 // The mosaic fills 720x576 of the raster; the ground and the car are those of the keys' defaults.
 TEST(RunTest, TheLastMosaicOfACarParkIsScoredAgainstItsPlan) {
   Seen seen;
-  const app::RunResult r = run_mosaic(6, &seen);
+  const app::Result r = run_mosaic(6, &seen);
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   const video::PlanScore score({720, 576, 16, 12}, 4.8, 2);
   const auto last = score(seen.displayed.at(5));
@@ -363,7 +361,7 @@ TEST(RunTest, TheLastMosaicOfACarParkIsScoredAgainstItsPlan) {
 
 TEST(RunTest, AMosaicWithABlackPartHasNoScore) {
   Seen seen;
-  const app::RunResult r = run_mosaic(3, &seen);
+  const app::Result r = run_mosaic(3, &seen);
   EXPECT_EQ(seen.displayed.size(), 3u);
   for (const char* name : {"psnr_y", "ssim_y", "line_error", "lines", "lines_missed"})
     EXPECT_FALSE(app::find(r.stats, std::string("quality.") + name)) << name;
@@ -371,7 +369,7 @@ TEST(RunTest, AMosaicWithABlackPartHasNoScore) {
 
 /// A picture of the chart of lines, seen by an equisolid lens of 180 degrees, which is also the one that is corrected
 /// if `keys` do not say otherwise.
-app::RunResult run_lines(Keys keys, Seen* seen = nullptr) {
+app::Result run_lines(Keys keys, Seen* seen = nullptr) {
   const Keys lens{{"camera.kind", "lines"},     {"camera.lens", "equisolid"}, {"camera.fov", "180deg"},
                   {"lens.mapping", "equisolid"}, {"lens.fov", "180deg"},       {"firmware.lut", "fixed_point"},
                   {"run.frames", "2"}};
@@ -391,7 +389,7 @@ double lines_bound() {
 
 TEST(RunTest, TheLastPictureOfTheChartOfLinesIsScored) {
   Seen seen;
-  const app::RunResult r = run_lines({}, &seen);
+  const app::Result r = run_lines({}, &seen);
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   const auto last = video::LineScore({720, 576, kLinesFocal, 1, 0, 0})(seen.displayed.at(1));
   EXPECT_EQ(real(r, "quality.straightness"), last.straightness);
@@ -424,14 +422,14 @@ TEST(RunTest, TheLastPictureOfTheChartOfLinesIsScored) {
 
 // The firmware believes in another lens than the camera has; the view that is displayed is the same.
 TEST(RunTest, WithAWrongLensTheLinesAreBent) {
-  const app::RunResult r = run_lines({{"lens.fov", "150deg"}, {"lens.out_focal", std::to_string(kLinesFocal) + "px"}});
+  const app::Result r = run_lines({{"lens.fov", "150deg"}, {"lens.out_focal", std::to_string(kLinesFocal) + "px"}});
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   EXPECT_GT(real(r, "quality.straightness"), 1.5 * lines_bound());
   EXPECT_LT(real(r, "quality.psnr_y"), 15);
 }
 
 TEST(RunTest, WithoutACorrectionTheLinesAreBentMost) {
-  const app::RunResult r = run_lines({{"firmware.kernel", "copy"}});
+  const app::Result r = run_lines({{"firmware.kernel", "copy"}});
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   EXPECT_GT(real(r, "quality.straightness"), 2.5 * lines_bound());
 }
@@ -443,7 +441,7 @@ struct LinesView {
 };
 class LinesViewTest : public testing::TestWithParam<LinesView> {};
 TEST_P(LinesViewTest, IsTheOneThatTheKeysMean) {
-  const app::RunResult r = run_lines(GetParam().keys);
+  const app::Result r = run_lines(GetParam().keys);
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   EXPECT_GT(real(r, "quality.psnr_y"), 18);
   EXPECT_LT(real(r, "quality.straightness"), lines_bound());
@@ -508,7 +506,7 @@ TEST(RunTest, ThePixelsOfACalibratedLensAreThoseOfItsPairs) {
 // one that fits best.
 TEST(RunTest, ARoadFilmIsScoredAgainstItsFlatFrame) {
   Seen seen;
-  const app::RunResult r = run_lines(
+  const app::Result r = run_lines(
       {{"camera.kind", "video"}, {"camera.file", FOVEA_ROAD_FILM}, {"camera.video_fov", "130deg"}}, &seen);
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   app::DecodeOptions options;
@@ -533,7 +531,7 @@ TEST(RunTest, ARoadFilmIsScoredAgainstItsFlatFrame) {
   EXPECT_FALSE(app::find(r.stats, "quality.straightness"));
 }
 
-void expect_no_score(const app::RunResult& r) {
+void expect_no_score(const app::Result& r) {
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   for (const char* name : {"psnr_y", "ssim_y", "straightness", "places", "places_missed"})
     EXPECT_FALSE(app::find(r.stats, std::string("quality.") + name)) << name;
@@ -547,7 +545,7 @@ TEST(RunTest, TheChartOfLinesIsSeenThroughALensThatIsAFormula) {
 
 TEST(RunTest, ColourBarsComeToTheDisplayAsTheyAreSent) {
   Seen seen;
-  const app::RunResult r = run({{"camera.kind", "bars"}, {"firmware.kernel", "copy"}, {"run.frames", "2"}}, false,
+  const app::Result r = run({{"camera.kind", "bars"}, {"firmware.kernel", "copy"}, {"run.frames", "2"}}, false,
                                kNever, &seen);
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   EXPECT_EQ(seen.displayed.at(1), video::BarsSource({720, 576, false, 0}).field(0));

@@ -24,7 +24,7 @@ class RegressionCommandTest : public testing::Test {
   int cli(std::vector<std::string> args) {
     out.str("");
     err.str("");
-    const int status = app::run_cli(args, {.out = out, .err = err, .make_simulation = nullptr});
+    const int status = app::run_cli(args, {.out = out, .err = err});
     const std::string text = err.str();
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 1) << text;
     return status;

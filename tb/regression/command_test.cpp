@@ -388,7 +388,7 @@ TEST_F(BlessTogetherTest, OfManyAtOnceNoneIsLost) {
       for (int n = 0; n < kEach; ++n) {
         std::ostringstream said, wrong;
         const int status = app::run_cli({"bless", run, "--against", base, "--why", "many"},
-                                        {.out = said, .err = wrong, .make_simulation = nullptr});
+                                        {.out = said, .err = wrong});
         if (status == 0 && said.str().find("+    why: \"many\"") != std::string::npos) ++done;
         if (status != 0) EXPECT_THAT(wrong.str(), HasSubstr("another run is writing it"));
       }

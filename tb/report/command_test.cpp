@@ -19,7 +19,7 @@ struct Outcome {
 
 Outcome fovea(const std::vector<std::string>& args) {
   std::ostringstream out, err;
-  const CliContext context{.out = out, .err = err, .make_simulation = [] {
+  const CliContext context{.out = out, .err = err, .make_machine = [](MachineKind) {
                              return std::make_unique<test::FakeBoard>();
                            }};
   const int status = run_cli(args, context);

@@ -39,7 +39,8 @@ class CliTest : public testing::Test {
     err.str("");
     return run_cli(args, {.out = out,
                           .err = err,
-                          .make_simulation = [] { return std::make_unique<test::FakeBoard>(); },
+                          .make_machine = [](MachineKind) { return std::make_unique<test::FakeBoard>(); },
+                          .tools = test::fake_tools(),
                           .signal = &signal,
                           .stop = &stop});
   }

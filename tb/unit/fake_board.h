@@ -9,23 +9,23 @@
 #include <thread>
 #include <vector>
 
+#include "model/cpu/core/stats.h"
 #include "sw/fovea/files/ffmpeg.h"
-#include "sw/fovea/files/output_file.h"
-#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/machine/machine.h"
+#include "tb/unit/fake_tools.h"
 
 namespace fovea::test {
 
-class FakeBoard : public app::Simulation {
+class FakeBoard : public app::Machine {
  public:
   void declare(ParamSet& params) override { params.add(params_); }
 
-  app::RunResult run(const app::RunRequest& request) override {
+  app::Result run(const app::Request& request) override {
     if (params_.mode.is("guest_failure")) throw GuestFailure("PC 0x0 in nowhere");
     if (params_.mode.is("defect")) throw std::logic_error("broken");
     if (params_.mode.is("broken_check")) FOVEA_CHECK(false, "planted");
-    std::optional<app::OutputFile> trace;
-    if (!request.bus_trace.empty())
-      trace.emplace(request.bus_trace, "--bus-trace", "a trace", [](std::string_view) { return true; });
+    app::Tools tools;
+    tools.make(request.tools, {.params = request.params});
     // derived from bad_alloc
     if (params_.mode.is("out_of_memory")) throw std::bad_array_new_length();
     if (params_.mode.is("no_thread"))
@@ -39,11 +39,8 @@ class FakeBoard : public app::Simulation {
     if (params_.mode.is("stopped_decoding")) throw app::Stopped();
     if (params_.mode.is("user_error")) throw UserError("footage 'x' is missing");
     if (params_.mode.is("not_modelled")) Diagnostics::instance().not_modelled("field X of Y");
-    if (trace) {
-      trace->write("the trace\n");
-      trace->commit();
-    }
-    app::RunResult result;
+    app::Result result;
+    tools.finish(cpu::Counts{}, result, result.lost);
     std::vector<app::FrameRow> late;
     std::uint64_t shown = 0;
     std::vector<std::uint8_t> uyvy(32 * 16 * 2, 128);

@@ -8,7 +8,9 @@
 #include <iostream>
 #include <thread>
 
+#include "model/cpu/core/stats.h"
 #include "sw/fovea/cli/cli.h"
+#include "tb/unit/fake_tools.h"
 
 namespace fovea::test {
 namespace {
@@ -86,7 +88,7 @@ struct Load : ParamGroup {
   }
 };
 
-class ToyBoard : public app::Simulation {
+class ToyBoard : public app::Machine {
  public:
   void declare(ParamSet& params) override {
     for (ParamGroup* g : {static_cast<ParamGroup*>(&toy_), static_cast<ParamGroup*>(&bridge_),
@@ -95,9 +97,12 @@ class ToyBoard : public app::Simulation {
       params.add(*g);
   }
 
-  app::RunResult run(const app::RunRequest& request) override {
+  app::Result run(const app::Request& request) override {
     if (const char* log = std::getenv("FAKE_LIMITS_LOG")) std::ofstream(log, std::ios::app) << toy_.value() << "\n";
-    if (!request.bus_trace.empty()) std::ofstream(request.bus_trace) << "no trace\n";
+    app::Tools tools;
+    tools.make(request.tools, {.params = request.params});
+    app::Result result;
+    tools.finish(cpu::Counts{}, result, result.lost);
     if (toy_.mode.is("guest_failure")) throw GuestFailure("PC 0x0 in nowhere");
     if (toy_.mode.is("user_error")) throw UserError("footage 'x' is missing");
     if (toy_.mode.is("defect")) throw std::logic_error("broken");
@@ -110,7 +115,6 @@ class ToyBoard : public app::Simulation {
     const double ms = 10 + static_cast<double>(bridge_.request() + bridge_.response()) +
                       0.01 * static_cast<double>(memory_.request() + memory_.response()) +
                       (priority_.arm.is("0") ? 0 : static_cast<double>(toy_.contention()));
-    app::RunResult result;
     result.complete = !request.stop;
     if (toy_.mode.is("bare")) return result;
     const auto count = [&](const char* name, std::uint64_t n) { result.stats.push_back({name, n, "1", "a count"}); };
@@ -157,14 +161,13 @@ class ToyBoard : public app::Simulation {
 }  // namespace
 }  // namespace fovea::test
 
-namespace fovea::app {
-std::unique_ptr<Simulation> make_simulation() { return std::make_unique<test::ToyBoard>(); }
-std::unique_ptr<Executor> make_executor() { throw UserError("no machine for exec"); }
-}  // namespace fovea::app
 
 int main(int argc, char** argv) {
   using namespace fovea::app;
-  CliContext context{.out = std::cout, .err = std::cerr, .make_simulation = make_simulation};
+  CliContext context{.out = std::cout, .err = std::cerr, .make_machine = [](MachineKind) {
+                       return std::make_unique<fovea::test::ToyBoard>();
+                     },
+                     .tools = fovea::test::fake_tools()};
   install_signals(context);
   return run_cli({argv + 1, argv + argc}, context);
 }

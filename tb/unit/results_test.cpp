@@ -36,7 +36,7 @@ constexpr std::array kForeign = {Foreign::kNone, Foreign::kBefore, Foreign::kInF
 class BoardWithVisitor : public test::FakeBoard {
  public:
   explicit BoardWithVisitor(std::function<void()>& visitor) : visitor_(visitor) {}
-  RunResult run(const RunRequest& request) override {
+  Result run(const Request& request) override {
     if (visitor_) visitor_();
     return test::FakeBoard::run(request);
   }
@@ -67,7 +67,7 @@ class ResultsTest : public testing::Test {
     args.insert(args.end(), {"-o", to.string()});
     return run_cli(args, {.out = out,
                           .err = err,
-                          .make_simulation = [this] {
+                          .make_machine = [this](MachineKind) {
                             return std::make_unique<BoardWithVisitor>(visitor);
                           },
                           .signal = &signal,

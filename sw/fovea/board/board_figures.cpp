@@ -133,7 +133,7 @@ void BoardFigures::add_frame_stats(std::vector<StatRow>& rows) const {
                        "time from power-up to the start of the first corrected frame on the display"));
 }
 
-void BoardFigures::add_host(RunResult& result, double wall_seconds, bool strict) const {
+void BoardFigures::add_host(Result& result, double wall_seconds, bool strict) const {
   auto& h = result.host;
   const double window = board_.frame_stats().window;
   h.push_back(wall_time(wall_seconds, "the whole run"));
@@ -161,7 +161,7 @@ void BoardFigures::add_host(RunResult& result, double wall_seconds, bool strict)
 
 /// The core's figures of the window, or of the whole run if none was opened. A core that ended, or
 /// comes to no instruction boundary any more, has what it has.
-cpu::Counts BoardFigures::collect_core(RunResult& result) const {
+cpu::Counts BoardFigures::collect_core(Result& result) const {
   const auto& core = board_.dm365.arm.core();
   cpu::CoreStats figures;
   if (opened_) figures.from = core.window_stats().from;
@@ -181,7 +181,7 @@ cpu::Counts BoardFigures::collect_core(RunResult& result) const {
   return figures.to;
 }
 
-cpu::Counts BoardFigures::collect(RunResult& result) {
+cpu::Counts BoardFigures::collect(Result& result) {
   add_frame_stats(stats_);
   result.stats = std::move(stats_);
   result.latency = std::move(latency_);
@@ -197,7 +197,7 @@ cpu::Counts BoardFigures::collect(RunResult& result) {
   return collect_core(result);
 }
 
-void take_timeline(board::Board& board, const RunRequest& request) {
+void take_timeline(board::Board& board, const Request& request) {
   // The window may end a little before the present time.
   constexpr Picoseconds kWhile = 200 * kPsPerMs;
   const Picoseconds now = board.window_end().value_or(kernel_time());

@@ -9,7 +9,7 @@
 #include "model/board/board.h"
 #include "sw/fovea/board/remap_time.h"
 #include "sw/fovea/machine/host_instructions.h"
-#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/machine/machine.h"
 
 namespace fovea::app {
 
@@ -36,14 +36,14 @@ class BoardFigures {
 
   /// Puts statistics, latencies, stalls and timeline into `result`, after the simulation.
   /// @return the core's counters at the window's end
-  cpu::Counts collect(RunResult& result);
+  cpu::Counts collect(Result& result);
   /// What goes into host.json, after collect().
-  void add_host(RunResult& result, double wall_seconds, bool strict) const;
+  void add_host(Result& result, double wall_seconds, bool strict) const;
 
  private:
   using Wall = std::chrono::steady_clock;
   void add_frame_stats(std::vector<StatRow>& rows) const;
-  cpu::Counts collect_core(RunResult& result) const;
+  cpu::Counts collect_core(Result& result) const;
 
   board::Board& board_;
   const board::BoardParams& params_;
@@ -62,6 +62,6 @@ class BoardFigures {
 };
 
 /// Hands over the rows of the timeline that are final, to a request that wants them as they come.
-void take_timeline(board::Board& board, const RunRequest& request);
+void take_timeline(board::Board& board, const Request& request);
 
 }  // namespace fovea::app

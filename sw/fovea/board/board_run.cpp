@@ -13,6 +13,7 @@
 #include "sw/fovea/board/board_console.h"
 #include "sw/fovea/board/board_debug.h"
 #include "sw/fovea/board/board_figures.h"
+#include "sw/fovea/board/board_machine.h"
 #include "sw/fovea/board/camera_inputs.h"
 #include "sw/fovea/board/kernel_choice.h"
 #include "sw/fovea/board/loader.h"
@@ -23,15 +24,10 @@
 #include "sw/fovea/console/core_semihosting.h"
 #include "sw/fovea/files/ffmpeg.h"
 #include "sw/fovea/files/side_output.h"
-#include "sw/fovea/machine/simulation.h"
-#include "sw/fovea/probes/bus_trace_run.h"
-#include "sw/fovea/probes/hazard_report.h"
-#include "sw/fovea/probes/perfetto_run.h"
+#include "sw/fovea/machine/machine.h"
 #include "sw/fovea/probes/run_profile.h"
 #include "sw/fovea/program/elf_image.h"
 #include "sw/fovea/program/exec_program.h"
-#include "sw/fovea/program/source_lines.h"
-#include "sw/fovea/tools/command_trace.h"
 #include "sw/fovea/tools/stall_regions.h"
 
 namespace fovea::app {
@@ -78,40 +74,34 @@ std::string reset_text(const std::string& cause, std::size_t before) {
   return text;
 }
 
-class BoardSimulation : public Simulation {
+class BoardMachine : public Machine {
  public:
+  explicit BoardMachine(bool hosted) { params_.hosted = hosted; }
   void declare(ParamSet& set) override { params_.declare(set); }
-  void declare_for_program(ParamSet& set) override {
-    params_.hosted = true;
-    declare(set);
-  }
   std::vector<std::pair<std::string, std::filesystem::path>> input_files() const override {
     return {{params_.firmware.elf.key(), program_file(params_)}};
   }
-  RunResult run(const RunRequest& request) override;
+  Result run(const Request& request) override;
 
  private:
   void open_window();
   void close_window();
   std::string failure_text(const std::string& what) const;
   std::string reset_note(const board::ChipReset& reset, std::size_t before) const;
-  void collect_profile(RunResult& result, const cpu::Counts& end, const RunRequest& request,
-                       const ElfImage& program);
   std::string ended_text(const RunEnd::Met& met) const;
-  SemihostingSettings semihosting_settings(const RunRequest& request) const;
-  std::optional<ElfImage> loader_of(const ElfImage& program, const RunRequest& request) const;
-  void load_loader(const ElfImage& loader, const ElfImage& program, const RunRequest& request);
+  SemihostingSettings semihosting_settings(const Request& request) const;
+  std::optional<ElfImage> loader_of(const ElfImage& program, const Request& request) const;
+  void load_loader(const ElfImage& loader, const ElfImage& program, const Request& request);
   void load_page(const ElfImage& program, std::vector<std::uint8_t> page);
   ExecMap hosted_map() const;
 
   // The steps of run(), in their order.
   struct Session;
-  std::vector<EndCondition> end_conditions(const RunRequest& request) const;
-  void build_board(const ElfImage& elf, const CameraInputs& cameras, const RunRequest& request);
-  void open_outputs(const CameraInputs& cameras, const RunRequest& request);
+  std::vector<EndCondition> end_conditions(const Request& request) const;
+  void build_board(const ElfImage& elf, const CameraInputs& cameras, const Request& request);
+  void open_outputs(Session& s, const CameraInputs& cameras);
   void take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
                   const board::FrameRecord& r);
-  void attach_profile(Session& s);
   void attach_host(Session& s);
   Picoseconds next_slice(Session& s) const;
   bool guest_failed(Session& s) const;
@@ -119,44 +109,33 @@ class BoardSimulation : public Simulation {
   bool ended(const Session& s) const;
   bool firmware_gave_up(Session& s) const;
   bool simulate(Session& s);
-  void state_end(Session& s, RunResult& result) const;
+  void state_end(Session& s, Result& result) const;
   void end_window(Session& s);
-  void collect(Session& s, RunResult& result);
+  void collect(Session& s, Result& result);
 
   board::BoardParams params_;
   std::unique_ptr<board::Board> board_;
   Subscription window_;
   Symbols symbols_;
-  std::unique_ptr<BusTraceRun> trace_;
-  std::unique_ptr<CommandTrace> commands_;
-  std::unique_ptr<RequestsAround> around_;
-  Subscription observing_;
-  std::unique_ptr<PerfettoRun> perfetto_;
+  Tools tools_;
   std::unique_ptr<BoardFigures> figures_;
   std::unique_ptr<MosaicScore> mosaic_score_;
   std::unique_ptr<PictureScore> picture_score_;
-  std::unique_ptr<RunProfile> profile_;
   std::vector<FrameRow> frames_;
 };
 
-void BoardSimulation::open_window() {
+void BoardMachine::open_window() {
   figures_->open_window();
-  if (profile_) profile_->window(true);
-  if (trace_) trace_->open();
-  if (perfetto_) perfetto_->window_opened();
-  if (commands_) commands_->begin(board_->dm365.ddr.controller(), kernel_time());
+  tools_.open_window();
 }
 
-void BoardSimulation::close_window() {
+void BoardMachine::close_window() {
   if (figures_->closed()) return;
-  if (trace_) trace_->close();
-  if (commands_) commands_->end();
-  if (perfetto_) perfetto_->window_closed();
+  tools_.close_window();
   figures_->close_window();
-  if (profile_) profile_->window(false);
 }
 
-std::string BoardSimulation::failure_text(const std::string& what) const {
+std::string BoardMachine::failure_text(const std::string& what) const {
   const auto& core = board_->dm365.arm.core();
   std::string text =
       fmt::format("{} at pc {}, {:.6f} s after power-up", what,
@@ -167,36 +146,28 @@ std::string BoardSimulation::failure_text(const std::string& what) const {
   return text;
 }
 
-std::string BoardSimulation::reset_note(const board::ChipReset& reset, std::size_t before) const {
+std::string BoardMachine::reset_note(const board::ChipReset& reset, std::size_t before) const {
   return fmt::format("the chip was reset at pc {}, {:.6f} s after power-up, and booted again ({} of "
                      "run.resets = {}): {}",
                      symbols_.place(reset.pc), to_s(reset.at), before + 1, params_.run.resets(),
                      reset.cause);
 }
 
-std::string BoardSimulation::ended_text(const RunEnd::Met& met) const {
+std::string BoardMachine::ended_text(const RunEnd::Met& met) const {
   return fmt::format("{} after {:.6f} s, {} instructions, at pc {}", met.what, to_s(met.at),
                      board_->dm365.arm.core().instructions_executed(), symbols_.place(met.pc));
 }
 
-void BoardSimulation::collect_profile(RunResult& result, const cpu::Counts& end,
-                                      const RunRequest& request, const ElfImage& program) {
-  const ProfileData data = profile_->finish(end, program_file(params_).filename().string());
-  const ElfImage* const programs[] = {&program, request.symbols};
-  result.profile = profile_result(data, programs);
-  result.profile.files.push_back({"frame_parts.csv", profile_->frame_parts()});
-}
-
-ExecMap BoardSimulation::hosted_map() const {
+ExecMap BoardMachine::hosted_map() const {
   return ExecProgram::elf(program_file(params_)).map(params_.soc.ddr.size_bytes(), DDR_BASE);
 }
 
 /// A program that lies in SDRAM alone needs a loader that sets up clocks and SDRAM before it; any other
 /// brings its own and starts as the chip does at power-up.
-std::optional<ElfImage> BoardSimulation::loader_of(const ElfImage& program,
-                                                   const RunRequest& request) const {
+std::optional<ElfImage> BoardMachine::loader_of(const ElfImage& program,
+                                                   const Request& request) const {
   const auto& segments = program.segments();
-  if (!request.hosted || std::any_of(segments.begin(), segments.end(),
+  if (!request.program || std::any_of(segments.begin(), segments.end(),
                                      [](const ElfSegment& s) { return s.address < DDR_BASE; }))
     return std::nullopt;
   refuse_mobile_memory(params_, "the boot loader of exec --board");
@@ -204,8 +175,8 @@ std::optional<ElfImage> BoardSimulation::loader_of(const ElfImage& program,
 }
 
 /// The loader leaves the registers in `start_state` (sw/firmware/boot/loader.h) when it jumps.
-void BoardSimulation::load_loader(const ElfImage& loader, const ElfImage& program,
-                                  const RunRequest&) {
+void BoardMachine::load_loader(const ElfImage& loader, const ElfImage& program,
+                                  const Request&) {
   const ElfSymbol* state = loader.find("start_state");
   FOVEA_CHECK(state && loader.segments().size() == 1, "the board's loader is the one of this build");
   const ElfSegment& segment = loader.segments().front();
@@ -217,7 +188,7 @@ void BoardSimulation::load_loader(const ElfImage& loader, const ElfImage& progra
 }
 
 /// The page stands for one of the boot image. A program that has something of its own at that place keeps it.
-void BoardSimulation::load_page(const ElfImage& program, std::vector<std::uint8_t> page) {
+void BoardMachine::load_page(const ElfImage& program, std::vector<std::uint8_t> page) {
   const auto overlaps = [&](const ElfSegment& s) {
     const std::uint32_t at = s.address >= INTERNAL_RAM_DATA_BASE ? s.address - INTERNAL_RAM_DATA_BASE : s.address;
     return s.address < DDR_BASE && at < PARAM_PAGE_BASE + page.size() && at + s.memory_size > PARAM_PAGE_BASE;
@@ -227,13 +198,13 @@ void BoardSimulation::load_page(const ElfImage& program, std::vector<std::uint8_
 }
 
 /// Heap and stack take the largest piece of SDRAM that the program leaves free.
-SemihostingSettings BoardSimulation::semihosting_settings(const RunRequest& request) const {
+SemihostingSettings BoardMachine::semihosting_settings(const Request& request) const {
   const ExecMap map = hosted_map();
   SemihostingSettings s;
   std::vector<std::string> line = {program_file(params_).filename().string()};
-  if (request.hosted) {
-    s.root = request.hosted->root;
-    line.insert(line.end(), request.hosted->arguments.begin(), request.hosted->arguments.end());
+  if (request.program) {
+    s.root = request.program->root;
+    line.insert(line.end(), request.program->arguments.begin(), request.program->arguments.end());
   }
   s.command_line = guest_command_line(line);
   s.heap_base = map.free_base;
@@ -243,16 +214,13 @@ SemihostingSettings BoardSimulation::semihosting_settings(const RunRequest& requ
 }
 
 /// What is attached to the board for one run, in the order in which it is made.
-struct BoardSimulation::Session {
-  Session(board::Board& board, const RunRequest& run, const ElfImage& elf,
+struct BoardMachine::Session {
+  Session(board::Board& board, const Request& run, const ElfImage& elf,
           const std::vector<EndCondition>& until, const Symbols& symbols)
       : request(run), program(elf), debug_memory(board.dm365), run_end(board, debug_memory, until) {
     auto& soc = board.dm365;
-    if (run.hazards) hazards.emplace(soc.arm.core(), soc.scr.memory(), symbols);
     log = register_log(register_blocks(board.platform), soc.config, soc.arm.core(),
                        [&symbols](std::uint32_t pc) { return symbols.describe(pc); });
-    log->keep(run.registers.kept);
-    if (!run.registers.pattern.empty()) log->start(run.registers);
   }
   bool wants_frames() const { return run_end.wants(EndCondition::Kind::kFrames); }
   /// The output that the program writes to has gone.
@@ -265,13 +233,12 @@ struct BoardSimulation::Session {
     if (gdb) gdb->failed(guest);
   }
 
-  const RunRequest& request;
+  const Request& request;
   const ElfImage& program;
   std::exception_ptr failure;  ///< of a writer: it must not unwind through the kernel
   std::string guest;           ///< why the guest failed
   std::string difference;      ///< between two models of a block
   std::optional<BoardConsole> console;
-  std::optional<HazardReport> hazards;
   BoardDebugMemory debug_memory;
   std::unique_ptr<RegisterLog> log;
   RunEnd run_end;
@@ -282,22 +249,19 @@ struct BoardSimulation::Session {
 };
 
 /// When the run is to end. @throws UserError for a condition that does not go with the request
-std::vector<EndCondition> BoardSimulation::end_conditions(const RunRequest& request) const {
+std::vector<EndCondition> BoardMachine::end_conditions(const Request& request) const {
   std::vector<EndCondition> until = parse_run_until(params_.run.until(), symbols_);
   const auto wanted = [&](EndCondition::Kind kind) {
     return std::any_of(until.begin(), until.end(), [&](const auto& c) { return c.kind == kind; });
   };
   if (request.gdb_port && wanted(EndCondition::Kind::kPc))
     throw UserError("key 'run.until': pc is not possible with --gdb; use a breakpoint");
-  if (!request.bus_trace.empty() && !wanted(EndCondition::Kind::kFrames))
-    throw UserError("--bus-trace records the window of displayed frames; allowed: with frames in "
-                    "'run.until'");
   return until;
 }
 
 /// The board with everything that is in its memories at power-up.
-void BoardSimulation::build_board(const ElfImage& elf, const CameraInputs& cameras,
-                                  const RunRequest& request) {
+void BoardMachine::build_board(const ElfImage& elf, const CameraInputs& cameras,
+                                  const Request& request) {
   const std::optional<ElfImage> loader = loader_of(elf, request);
   board_ = std::make_unique<board::Board>("board", params_, cameras.sources(),
                                           loader ? loader->entry() : elf.entry(),
@@ -314,48 +278,41 @@ void BoardSimulation::build_board(const ElfImage& elf, const CameraInputs& camer
   load_page(elf, parameter_page(params_, cameras.views()));
 }
 
-/// What is written beside the figures, and what opens and closes with the window.
-void BoardSimulation::open_outputs(const CameraInputs& cameras, const RunRequest& request) {
-  if (!request.bus_trace.empty())
-    trace_ = std::make_unique<BusTraceRun>(request.bus_trace, request.params, *board_);
-  if (!request.command_trace.empty()) commands_ = std::make_unique<CommandTrace>(request.command_trace);
-  if (request.around) {
-    around_ = std::make_unique<RequestsAround>(*request.around, [](Master m) { return std::string(stat_name(m)); });
-    observing_ = board_->dm365.scr.crossbar().observe(*around_);
-  }
+/// The figures, the scores, and what the tools write beside them.
+void BoardMachine::open_outputs(Session& s, const CameraInputs& cameras) {
+  auto& soc = board_->dm365;
   figures_ = std::make_unique<BoardFigures>(*board_, params_);
-  if (!request.perfetto.file.empty()) perfetto_ = std::make_unique<PerfettoRun>(request.perfetto, *board_);
+  tools_.make(s.request.tools, {.params = s.request.params,
+                                .core = &soc.arm.core(),
+                                .program = program_file(params_).filename().string(),
+                                .symbols = &symbols_,
+                                .programs = {&s.program, s.request.symbols},
+                                .whole_run = !s.wants_frames(),
+                                .controller = &soc.ddr.controller(),
+                                .observe = [&soc](MemObserver& o) { return soc.scr.crossbar().observe(o); },
+                                .name_of = [](Master m) { return std::string(stat_name(m)); },
+                                .now = [] { return kernel_time(); },
+                                .log = s.log.get(),
+                                .memory = &soc.scr.memory(),
+                                .board = board_.get()});
   mosaic_score_ = MosaicScore::of(params_);
   picture_score_ = PictureScore::of(params_, cameras.views());
   window_ = board_->observe_window([this](bool open) { open ? open_window() : close_window(); });
 }
 
 /// A displayed frame goes to whoever wants it. An error of a writer is kept and stops the run.
-void BoardSimulation::take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
+void BoardMachine::take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
                                  const board::FrameRecord& r) {
   if (mosaic_score_) mosaic_score_->displayed(f);
   const CameraInputs::Sent sent = cameras.sent(*board_, r);
   if (picture_score_) picture_score_->displayed(f, r.camera, sent);
-  FrameRow out;
-  out.index = r.index;
-  out.camera = r.camera;
-  out.captured = r.captured;
-  out.capture_start = r.capture_start;
-  out.capture_end = r.capture_end;
-  out.remap_start = r.remap_start;
-  out.remap_end = r.remap_end;
-  out.display_start = r.display_start;
-  out.display_end = r.display_end;
-  out.dropped = r.dropped;
-  out.repeated = r.repeated;
   if (s.failure) return;
-  if (profile_) profile_->frame(out);
   try {
-    if (perfetto_) perfetto_->frame(f, r);
+    tools_.frame(f, r);
     if (s.request.frame_row)
-      s.request.frame_row(out);
+      s.request.frame_row(row_of(r));
     else
-      frames_.push_back(out);
+      frames_.push_back(row_of(r));
     if (s.request.frame)
       s.request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy, pixel_on_screen(params_.video)});
     if (s.request.camera && sent.picture)
@@ -366,25 +323,9 @@ void BoardSimulation::take_frame(Session& s, const CameraInputs& cameras, const 
   }
 }
 
-void BoardSimulation::attach_profile(Session& s) {
-  const RunRequest& request = s.request;
-  const ElfImage* const programs[] = {&s.program, request.symbols};
-  if (request.profile)
-    profile_ = std::make_unique<RunProfile>(*board_, !s.wants_frames(), programs);
-  if (!perfetto_ || !perfetto_->wants_functions()) return;
-  cpu::Core& core = board_->dm365.arm.core();
-  cpu::ClockProfile& profile = request.profile ? *core.profile() : core.start_profile();
-  if (!request.profile) profile.stacks.set_functions(program_functions(programs));
-  // The names are those of the profile's files.
-  const auto lines = std::make_shared<SourceLines>();
-  for (const ElfImage* const program : programs)
-    if (program) lines->add(*program);
-  perfetto_->watch_functions(profile, [lines](std::uint32_t at) { return lines->function_text(at); });
-}
-
 /// Semihosting and the debugger.
-void BoardSimulation::attach_host(Session& s) {
-  const RunRequest& request = s.request;
+void BoardMachine::attach_host(Session& s) {
+  const Request& request = s.request;
   cpu::Core& core = board_->dm365.arm.core();
   if (request.semihosting && s.run_end.wants(EndCondition::Kind::kExit))
     s.semihosting.emplace(core, s.debug_memory, semihosting_settings(request), *request.semihosting, [&s] {
@@ -397,7 +338,7 @@ void BoardSimulation::attach_host(Session& s) {
                                          *request.notes);
 }
 
-Picoseconds BoardSimulation::next_slice(Session& s) const {
+Picoseconds BoardMachine::next_slice(Session& s) const {
   if (s.run_end.met() || figures_->closed()) return after_end(s.behind_end++);
   if (s.gdb && s.gdb->hit_pending()) return kPsPerUs;
   return s.request.limits.next_slice(kSlice, kernel_time(),
@@ -405,7 +346,7 @@ Picoseconds BoardSimulation::next_slice(Session& s) const {
 }
 
 /// The core stands for good, or the chip was reset and does not boot again.
-bool BoardSimulation::guest_failed(Session& s) const {
+bool BoardMachine::guest_failed(Session& s) const {
   const auto& arm = board_->dm365.arm;
   if (!arm.failure().empty()) {
     s.guest_fails(failure_text(arm.failure()));
@@ -419,21 +360,21 @@ bool BoardSimulation::guest_failed(Session& s) const {
 }
 
 /// A block found its two models to differ, and paused the kernel.
-bool BoardSimulation::models_differ(Session& s) const {
+bool BoardMachine::models_differ(Session& s) const {
   for (const auto& [name, block] : board_->platform.blocks())
     if (s.difference.empty()) s.difference = block->difference();
   return !s.difference.empty();
 }
 
 /// The run has ended, and the core's counters are those of its end, as far as they will be.
-bool BoardSimulation::ended(const Session& s) const {
+bool BoardMachine::ended(const Session& s) const {
   const bool asleep = s.run_end.met() && figures_->asleep_at_end();
   return (figures_->closed() && (board_->dm365.arm.core().mark_done() || asleep)) ||
          (s.run_end.core_ended() && kernel_stopped()) || s.behind_end > kLooksAfterEnd;
 }
 
 /// The firmware has stopped by itself, or shows no frame.
-bool BoardSimulation::firmware_gave_up(Session& s) const {
+bool BoardMachine::firmware_gave_up(Session& s) const {
   if (s.wants_frames() && board_->log.phase() == board::Phase::kFailed && board_->dm365.arm.asleep() &&
       !s.run_end.met()) {
     s.guest = failure_text("the firmware stopped: " + last_line(board_->uart_text()));
@@ -449,13 +390,13 @@ bool BoardSimulation::firmware_gave_up(Session& s) const {
 }
 
 /// False: it was stopped before its end.
-bool BoardSimulation::simulate(Session& s) {
-  const RunRequest& request = s.request;
+bool BoardMachine::simulate(Session& s) {
+  const Request& request = s.request;
   auto& arm = board_->dm365.arm;
   for (;;) {
     s.slicer.run(next_slice(s));
     take_timeline(*board_, request);
-    if (s.hazards) s.hazards->settle(board_->window_end().value_or(kernel_time()));
+    tools_.settle(board_->window_end().value_or(kernel_time()));
     const std::uint64_t executed = arm.core().instructions_executed();
     request.progress.update({kernel_time(), board_->frames_in_window(),
                              s.wants_frames() ? params_.run.frames() : 0, executed,
@@ -471,7 +412,7 @@ bool BoardSimulation::simulate(Session& s) {
 }
 
 /// Why the run is over, and whether that is the end that was wanted.
-void BoardSimulation::state_end(Session& s, RunResult& result) const {
+void BoardMachine::state_end(Session& s, Result& result) const {
   const auto& met = s.run_end.met();
   if (met && met->limit)
     s.guest = failure_text(
@@ -487,7 +428,7 @@ void BoardSimulation::state_end(Session& s, RunResult& result) const {
 /// A stopped run closes its window a slice from here: the masters may have worked ahead of this time,
 /// but not past the display's next line. The core's own part follows at its next boundary, which a
 /// failed core does not reach any more.
-void BoardSimulation::end_window(Session& s) {
+void BoardMachine::end_window(Session& s) {
   if (!figures_->closed() && !kernel_stopped()) {
     board_->close_window(kernel_time() + kSlice);
     for (int i = 0; i < 20 && !figures_->core_done(); ++i) s.slicer.run(kSlice);
@@ -496,41 +437,29 @@ void BoardSimulation::end_window(Session& s) {
 }
 
 /// What the console and the writers have, and the figures of the window.
-void BoardSimulation::collect(Session& s, RunResult& result) {
+void BoardMachine::collect(Session& s, Result& result) {
   if (s.console) {
     s.console->look();
     result.typed = s.console->typed();
     result.untyped = s.console->open_step();
   }
   if (s.semihosting) result.exit_code = s.semihosting->exit_code();
-  if (trace_) side_output("the bus trace", result.lost, [&] { trace_->finish(); });
-  if (commands_) side_output("the command trace", result.lost, [&] { commands_->finish(); });
-  if (around_) result.around = around_->csv();
-  if (perfetto_)
-    side_output("the Perfetto file", result.lost, [&] {
-      if (const std::string note = perfetto_->finish(); !note.empty()) result.notes.push_back(note);
-    });
+  result.killed = s.gdb && s.gdb->killed();
   result.guest_failure = s.guest;
   result.difference = s.difference;
   const cpu::Counts counted = figures_->collect(result);
   if (mosaic_score_) mosaic_score_->add(result.stats, board_->camera_stats());
   if (picture_score_) picture_score_->add(result.stats);
-  if (profile_)
-    side_output("the profile", result.lost, [&] { collect_profile(result, counted, s.request, s.program); });
-  if (s.hazards) {
-    s.hazards->settle(board_->window_end().value_or(kernel_time()));
-    s.hazards->collect(result.stats);
-    result.hazards = s.hazards->failure();
-  }
+  tools_.settle(board_->window_end().value_or(kernel_time()));
+  tools_.finish(counted, result, result.lost);
   result.frames = std::move(frames_);
   result.uart = board_->uart_text();
   result.kernel = kernel_that_ran(params_, result.uart);
   for (std::size_t i = 0; i < board_->resets().size(); ++i)
     result.notes.push_back(reset_note(board_->resets()[i], i));
-  if (!s.request.registers.pattern.empty()) result.registers = s.log->text();
 }
 
-RunResult BoardSimulation::run(const RunRequest& request) {
+Result BoardMachine::run(const Request& request) {
   const auto started = std::chrono::steady_clock::now();
   const ElfImage elf = ElfImage::load(program_file(params_));
   check_fits(elf, memory_regions(params_));
@@ -541,12 +470,12 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   complete_params(params_);
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
-  RunResult result;
+  Result result;
   const bool keep = request.camera || PictureScore::possible(params_);
   const CameraInputs cameras(params_, keep, request.stop, result.notes);
   build_board(elf, cameras, request);
-  open_outputs(cameras, request);
   Session session(*board_, request, elf, until, symbols_);
+  open_outputs(session, cameras);
   if (request.console || dialogue)
     session.console.emplace(*board_, request.console, std::move(dialogue));
   const Subscription frames =
@@ -554,7 +483,6 @@ RunResult BoardSimulation::run(const RunRequest& request) {
         take_frame(session, cameras, f, r);
       });
   if (!session.wants_frames()) board_->measure_whole_run();
-  attach_profile(session);
   attach_host(session);
 
   result.complete = simulate(session);
@@ -573,6 +501,6 @@ RunResult BoardSimulation::run(const RunRequest& request) {
 
 }  // namespace
 
-std::unique_ptr<Simulation> make_simulation() { return std::make_unique<BoardSimulation>(); }
+std::unique_ptr<Machine> make_board(bool for_program) { return std::make_unique<BoardMachine>(for_program); }
 
 }  // namespace fovea::app

@@ -5,7 +5,7 @@
 
 #include "model/board/board.h"
 #include "model/video/scene/plan_score.h"
-#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/machine/machine.h"
 
 namespace fovea::app {
 

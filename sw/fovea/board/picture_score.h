@@ -10,7 +10,7 @@
 #include "model/video/scene/line_score.h"
 #include "model/video/scene/pixel_remap.h"
 #include "sw/fovea/board/camera_inputs.h"
-#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/machine/machine.h"
 
 namespace fovea::app {
 

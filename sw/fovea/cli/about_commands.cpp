@@ -19,11 +19,11 @@ struct ParamsOptions {
 int list_params(const ParamsOptions& o, const CliContext& context) {
   ParamSet params;
   ReplayParams replay;
-  const auto simulation = context.make_simulation();
+  const auto machine = context.make_machine(MachineKind::kBoard);
   if (o.of_replay)
     replay.declare(params);
   else
-    simulation->declare(params);
+    machine->declare(params);
   context.out << params_table(params, o.patterns, o.markdown) << std::flush;
   return kExitDone;
 }

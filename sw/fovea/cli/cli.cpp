@@ -111,6 +111,8 @@ int parse_and_run(const std::vector<std::string>& args, const CliContext& contex
       "be written; 3 the firmware failed; 4 a defect of fovea; 130 or 143 stopped by a signal, with a valid "
       "partial result.");
   const std::vector<Command> commands = add_commands(app);
+  for (const Command& c : commands)
+    if (c.add_tools) c.add_tools(context.tools);
   std::vector<std::string> own = args;
   for (const Command& c : commands)
     if (c.take_foreign && !own.empty() && own[0] == c.options->get_name()) c.take_foreign(own);

@@ -2,10 +2,12 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "sw/fovea/machine/command.h"
+#include "sw/fovea/tools/tool.h"
 
 namespace CLI {
 class App;
@@ -27,6 +29,8 @@ struct Command {
   std::function<int(const Call&)> run;
   /// The keys that its `-s` takes; empty: it has no `-s` that could be completed.
   std::function<std::vector<std::string>(const CliContext&)> keys = {};
+  /// Adds the options of these tools to its own; empty: it has none.
+  std::function<void(std::span<const ToolRow>)> add_tools = {};
   /// Removes from the arguments, of which the first is the command's name, what is not for Fovea; empty: all is.
   std::function<void(std::vector<std::string>&)> take_foreign = {};
 };

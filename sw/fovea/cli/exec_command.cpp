@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <optional>
 #include <ostream>
 
@@ -19,6 +19,7 @@
 #include "sw/fovea/files/warnings.h"
 #include "sw/fovea/machine/progress.h"
 #include "sw/fovea/results/run_dir.h"
+#include "sw/fovea/results/run_writer.h"
 
 namespace fovea::app {
 namespace {
@@ -35,49 +36,6 @@ constexpr const char* kMemoryHelp =
     "after the program that is not an option of exec.\n"
     "Exit status: the program's own; 2 wrong input; 3 the program failed; 4 a defect of fovea, "
     "each with a line that begins with 'fovea:'; 130 or 143 stopped by a signal.";
-
-/// `--board`: runs the program as the board's firmware. It ends by semihosting, or when nothing can
-/// wake the core any more, unless run.until says otherwise.
-ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOptions& o,
-                        const ExecRequest& request, const CliContext& context) {
-  ConsoleStream uart0(context.out, o.console ? STDIN_FILENO : -1, request.stop);
-  std::optional<RawTerminal> raw;
-  if (uart0.interactive()) {
-    context.err << kConsoleHelp << std::flush;
-    raw.emplace(STDIN_FILENO);
-  }
-  RunRequest run{.params = params,
-                 .folder = {},
-                 .profile = o.profile,
-                 .hazards = o.hazards,
-                 .stop = request.stop,
-                 .progress = *request.progress,
-                 .frame = {},
-                 .gdb_port = request.gdb_port,
-                 .notes = &request.notes,
-                 .registers = request.registers,
-                 .limits = request.limits,
-                 .symbols = request.symbols,
-                 .console = &uart0,
-                 .semihosting = &request.console,
-                 .hosted = HostedProgram{request.root, request.arguments}};
-  RunResult result = board.run(run);
-  ExecResult out;
-  out.complete = result.complete;
-  out.left = uart0.quit();
-  out.exit_code = result.exit_code.value_or(0);
-  out.guest_failure = std::move(result.guest_failure);
-  out.difference = std::move(result.difference);
-  out.stats = std::move(result.stats);
-  out.host = std::move(result.host);
-  out.stalls = std::move(result.stalls);
-  out.registers = std::move(result.registers);
-  out.lost = std::move(result.lost);
-  out.profile = std::move(result.profile);
-  out.hazards = std::move(result.hazards);
-  if (!result.exit_code) out.ended = std::move(result.ended);
-  return out;
-}
 
 ExecProgram program_of(const ExecOptions& o) {
   const bool flat = !o.load.empty() || !o.entry.empty() || o.thumb;
@@ -116,9 +74,6 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
       ->type_name("DIR");
   c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
       ->type_name(":PORT");
-  add_register_log_options(*c, o.registers);
-  add_hazards_option(*c, o.hazards);
-  add_profile_option(*c, o.profile);
   add_limit_options(*c, o.limits);
   c->add_flag("--strict", o.strict,
               "Stop with an error when the program uses a feature that is not modelled, or a "
@@ -171,11 +126,6 @@ bool caches_unused(std::span<const StatRow> stats) {
 
 /// Options that do not go together. @throws UserError
 void refuse_combinations(const ExecOptions& o) {
-  check_register_log(o.registers, o.gdb);
-  if (o.fast_memory && !o.registers.pattern.empty())
-    throw UserError("--log-registers: there are none with --fast-memory; allowed: one of the two");
-  if (o.hazards && !o.board)
-    throw UserError("--hazards: there is no DMA; allowed: with --board");
   if (o.console && !o.board) throw UserError("--console: there is no UART; allowed: with --board");
   if (o.board && (o.fast_memory || o.caches || !o.load.empty() || !o.entry.empty() || o.thumb))
     throw UserError(
@@ -218,51 +168,78 @@ void warn_of_fast_memory(const ParamSet& params, const Experiment& experiment) {
 }
 
 /// What is said after a program has ended.
-void report_program(const ExecOptions& o, const ExecResult& result, std::ostream& err) {
+void report_program(const ExecOptions& o, const Result& result, std::ostream& err) {
   err << exec_words(result.stats, result.core_clock);
   if (!o.caches && !o.fast_memory && !o.board && caches_unused(result.stats))
     err << "The program ran with MMU and caches off. 'fovea exec --caches' turns them on.\n";
-  if (!result.ended.empty()) err << "ended by " << result.ended << "\n";
+  if (!result.ended.empty() && !result.exit_code) err << "ended by " << result.ended << "\n";
+  for (const std::string& note : result.notes) err << one_line(note) << "\n";
   err << std::flush;
 }
 
-void write_program_results(const ExecOptions& o, const ExecResult& result, const std::vector<std::string>& args,
-                           RunDir& dir, const CliContext& context) {
-  dir.write("stalls.csv", stalls_csv(result.stalls));
-  for (const ResultFile& f : result.profile.files) dir.write(f.name, f.text);
-  if (!o.registers.pattern.empty()) dir.write("registers.log", result.registers);
-  dir.write("host.json", host_json(result.host, args, version_text()));
-  dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
-                                     collect_warnings(Diagnostics::instance())));
-  say_note(dir.commit(result.complete && result.guest_failure.empty()), context);
+void write_results(const Result& result, const std::vector<std::string>& args, RunDir& dir,
+                   const CliContext& context) {
+  const bool complete = result.complete && result.guest_failure.empty();
+  std::vector<ResultFile> files = {{"stalls.csv", stalls_csv(result.stalls)}};
+  files.insert(files.end(), result.files.begin(), result.files.end());
+  write_run(dir,
+            {.stats = result.stats,
+             .host = result.host,
+             .complete = complete,
+             .warnings = collect_warnings(Diagnostics::instance())},
+            files, args);
+  say_note(dir.commit(complete), context);
 }
 
-/// The exit status. `lost`: the program's output could not be written. @throws ModelsDiffer, GuestFailure, UserError
-int program_status(const ExecOptions& o, const ExecResult& result, bool lost, const CliContext& context) {
+/// How the run ended that is not in its result.
+struct Ended {
+  bool left = false;         ///< the user left the console
+  bool output_lost = false;  ///< the program's output could not be written
+};
+
+/// The exit status. @throws ModelsDiffer, GuestFailure, UserError
+int program_status(const ExecOptions& o, const Result& result, const Ended& how, const CliContext& context) {
   if (!result.difference.empty()) throw ModelsDiffer(result.difference);
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
-  if (o.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
-  if (lost) throw UserError("the program's output cannot be written");
-  if (result.complete) return result.lost.empty() ? result.exit_code : kExitWrongInput;
+  if (o.strict && !result.fault.empty()) throw GuestFailure(result.fault);
+  if (how.output_lost) throw UserError("the program's output cannot be written");
+  if (result.complete) return result.lost.empty() ? result.exit_code.value_or(0) : kExitWrongInput;
   const int signal = context.signal ? context.signal->load() : 0;
   context.err << fmt::format("fovea: stopped {}; the figures cover what was simulated\n",
                              result.killed && !signal ? "by the debugger" : "before the end");
-  if (result.left) return 128 + SIGINT;
+  if (how.left) return 128 + SIGINT;
   return signal ? 128 + signal : kExitGuestFailed;
 }
+
+MachineKind kind_of(const ExecOptions& o) {
+  return o.board ? MachineKind::kProgramBoard : o.fast_memory ? MachineKind::kFlat : MachineKind::kCore;
+}
+
+/// UART0 of the board on the output and, with --console, the input. The core alone has none.
+struct Uart {
+  Uart(const ExecOptions& o, const std::atomic<bool>& stop, const CliContext& context) {
+    if (!o.board) return;
+    stream.emplace(context.out, o.console ? STDIN_FILENO : -1, stop);
+    if (!stream->interactive()) return;
+    context.err << kConsoleHelp << std::flush;
+    raw.emplace(STDIN_FILENO);
+  }
+  std::optional<ConsoleStream> stream;
+  std::optional<RawTerminal> raw;
+};
 
 int exec(const ExecOptions& o, const std::vector<std::string>& args, const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
   refuse_combinations(o);
-  const auto executor = context.make_executor();
-  const auto board = context.make_simulation();
+  const MachineKind kind = kind_of(o);
+  std::vector<AskedTool> tools =
+      o.tools.asked(tools_of(kind), !o.gdb.empty(), o.fast_memory ? "without --fast-memory" : "with --board");
+  const auto machine = context.make_machine(kind);
   ParamSet params;
-  if (o.board)
-    board->declare_for_program(params);
-  else
-    executor->declare(params);
+  machine->declare(params);
   Experiment experiment(params);
   set_keys(o, experiment);
+  o.tools.set_keys(params, experiment);
   const RunLimits limits = limits_of(o.limits);
   const std::optional<ElfImage> symbols = symbols_of(o.limits);
   std::ostream nowhere(nullptr);
@@ -276,36 +253,37 @@ int exec(const ExecOptions& o, const std::vector<std::string>& args, const CliCo
   std::optional<RunDir> dir;
   if (!o.out_dir.empty()) {
     dir.emplace(o.out_dir, "exec");
+    o.tools.refuse_inside(*dir);
     dir->write("config.json", config_json(params, experiment, origin_of(params, o)));
   }
-  HostConsole console(context.out, context.err, context.stop);
+  const std::atomic<bool>& stop = context.stop ? *context.stop : kNeverStops;
+  HostConsole semihosting(context.out, context.err, context.stop);
   // Never updated in place, because the program writes to the same terminal.
   ProgressMeter meter(o.quiet ? nowhere : context.err, false);
-  const ExecRequest request{.program = program,
-                            .arguments = o.arguments,
-                            .root = o.root,
-                            .params = params,
-                            .gdb_port = gdb_port,
-                            .notes = context.err,
-                            .caches = o.caches,
-                            .profile = o.profile,
-                            .fast_memory = o.fast_memory,
-                            .console = console,
-                            .stop = context.stop ? *context.stop : kNeverStops,
-                            .registers = o.registers,
-                            .limits = limits,
-                            .symbols = symbols ? &*symbols : nullptr,
-                            .progress = &meter};
-  const ExecResult result =
-      o.board ? run_on_board(*board, params, o, request, context) : executor->run(request);
+  Uart uart(o, stop, context);
+  const Result result = machine->run({.params = params,
+                                      .stop = stop,
+                                      .progress = meter,
+                                      .tools = std::move(tools),
+                                      .gdb_port = gdb_port,
+                                      .notes = &context.err,
+                                      .limits = limits,
+                                      .symbols = symbols ? &*symbols : nullptr,
+                                      .console = uart.stream ? &*uart.stream : nullptr,
+                                      .semihosting = &semihosting,
+                                      .program = UserProgram{program, o.root, o.arguments, o.caches}});
+  uart.raw.reset();
   context.out.flush();
-  const bool lost = !context.out;
+  const Ended how{uart.stream && uart.stream->quit(), !context.out};
   if (!o.quiet) report_program(o, result, context.err);
-  context.err << result.profile.table;
-  if (!dir) context.err << result.registers << std::flush;
-  if (dir) write_program_results(o, result, args, *dir, context);
+  context.err << result.table;
+  if (dir)
+    write_results(result, args, *dir, context);
+  else
+    for (const ResultFile& f : result.files)
+      if (f.shown) context.err << f.text << std::flush;
   say_lost(result.lost, context);
-  return program_status(o, result, lost, context);
+  return program_status(o, result, how, context);
 }
 
 }  // namespace
@@ -316,10 +294,11 @@ Command add_exec(CLI::App& app) {
   return {c, [o](const Call& call) { return exec(*o, call.args, call.context); },
           [](const CliContext& context) {
             ParamSet params;
-            const auto executor = context.make_executor ? context.make_executor() : nullptr;
-            if (executor) executor->declare(params);
+            const auto machine = context.make_machine(MachineKind::kCore);
+            machine->declare(params);
             return keys_of(params);
           },
+          [o, c](std::span<const ToolRow> rows) { o->tools.add_to(*c, rows); },
           [o, c](std::vector<std::string>& args) { o->arguments = take_program_arguments(*c, args); }};
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sw/fovea/cli/shared_options.h"
+#include "sw/fovea/cli/tool_options.h"
 #include "sw/fovea/machine/command.h"
 
 namespace CLI {
@@ -17,10 +18,10 @@ struct ExecOptions {
   std::vector<std::string> arguments;  ///< arguments of the program
   std::vector<std::string> sets;
   std::string load, entry, root, out_dir, gdb;
-  RegisterLogRequest registers;
+  ToolOptions tools;
   LimitOptions limits;
   bool thumb = false, fast_memory = false, caches = false, strict = false, quiet = false;
-  bool board = false, console = false, hazards = false, profile = false;
+  bool board = false, console = false;
 };
 
 /// Adds the subcommand, whose options are stored in `options`.

@@ -218,7 +218,7 @@ CLI::App* add_options(CLI::App& app, LimitsOptions& o) {
 /// where a figure was asked for, 4 a run met a defect; 128 + the signal if stopped
 int find_limits(const LimitsOptions& o, const app::CliContext& context) {
   // Everything wrong with the question that shows without a run is said before a folder is made.
-  const auto plain = app::effective_run(context.make_simulation, o.experiment, o.sets);
+  const auto plain = app::effective_run(context.make_machine, o.experiment, o.sets);
   const Question question = question_of(o, plain->params);
   const std::vector<Settings> over = combinations(o.over);
   const fs::path dir = o.out_dir.empty()
@@ -230,7 +230,7 @@ int find_limits(const LimitsOptions& o, const app::CliContext& context) {
     Settings all = o.sets;
     all.insert(all.end(), s.begin(), s.end());
     check_question(question, all, [&](const Settings& settings) {
-      auto run = app::effective_run(context.make_simulation, o.experiment, settings);
+      auto run = app::effective_run(context.make_machine, o.experiment, settings);
       shared.insert(run->shared);
       return run;
     });

@@ -9,11 +9,12 @@
 #include <ostream>
 #include <set>
 
+#include "model/cpu/core/stats.h"
 #include "model/trace/core/bounds.h"
 #include "sw/fovea/cli/command_row.h"
 #include "sw/fovea/cli/shared_options.h"
+#include "sw/fovea/cli/tool_options.h"
 #include "sw/fovea/config/experiment.h"
-#include "sw/fovea/config/run_until.h"
 #include "sw/fovea/explain/last_words.h"
 #include "sw/fovea/files/side_output.h"
 #include "sw/fovea/files/warnings.h"
@@ -24,7 +25,7 @@
 #include "sw/fovea/results/figures.h"
 #include "sw/fovea/results/names.h"
 #include "sw/fovea/results/run_dir.h"
-#include "sw/fovea/tools/command_trace.h"
+#include "sw/fovea/results/run_writer.h"
 
 namespace fovea::app {
 namespace {
@@ -38,8 +39,7 @@ struct ReplayOptions {
   std::string out_dir;
   bool out_given = false;
   bool memory_only = false;
-  std::string command_trace;  ///< file; empty: none
-  std::string around;         ///< a time, for requests.csv; empty: none
+  ToolOptions tools;
   bool wrap = false;  ///< addresses beyond ddr.part are taken modulo its size
   std::vector<std::string> without;  ///< labels of masters whose requests are left out
 };
@@ -155,8 +155,6 @@ CLI::App* add_options(CLI::App& app, ReplayOptions& replay) {
   c->add_option("-o,--out", replay.out_dir, "Folder for the results")
       ->type_name("DIR")
       ->default_str("out/TRACE");
-  add_command_trace_option(*c, replay.command_trace);
-  add_around_option(*c, replay.around);
   c->add_flag("--memory-only", replay.memory_only, "Leave the crossbar out");
   c->add_flag("--wrap", replay.wrap,
               "Take addresses beyond the memory (ddr.part) modulo its size");
@@ -168,6 +166,7 @@ CLI::App* add_options(CLI::App& app, ReplayOptions& replay) {
 
 int replay(const ReplayOptions& options, const std::vector<std::string>& args, const CliContext& context) {
   const auto started = Wall::now();
+  const std::vector<AskedTool> asked = options.tools.asked(ToolNeeds::kMemory, false);
   const WarningScope warnings(context.err, false, true);
   const OpenTrace trace = open_own_trace(options.trace);
   ReplayParams params;
@@ -185,11 +184,7 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / fs::path(options.trace).stem(),
              "replay");
-  std::optional<CommandTrace> commands;
-  if (!options.command_trace.empty()) {
-    check_command_trace(options.command_trace, dir);
-    commands.emplace(options.command_trace);
-  }
+  options.tools.refuse_inside(dir);
   // The hash of a long trace takes as long as a part of the replay; nothing but config.json needs it.
   std::future<Provenance> provenance = std::async(std::launch::async, [&] { return origin_of(set, options); });
 
@@ -198,17 +193,19 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
   SomeStreams source(options.wrap ? wrapped : *trace.source, left_out);
   ReplayPath path(one_line(options.trace), *trace.info, source, params, options.memory_only);
   path.end_with_window();
-  if (commands) commands->begin(path.controller(), path.start());
-  std::optional<RequestsAround> around;
-  Subscription observing;
-  if (!options.around.empty()) {
-    around.emplace(parse_time("--around", options.around), [&path](Master m) { return path.label(m); });
-    observing = path.observe(*around);
-  }
+  Tools tools;
+  tools.make(asked, {.params = set,
+                     .controller = &path.controller(),
+                     .observe = [&path](MemObserver& o) { return path.observe(o); },
+                     .name_of = [&path](Master m) { return path.label(m); },
+                     .now = [&path] { return path.start(); }});
+  tools.open_window();
   const bool complete = replay_to_end(path, trace.info->start, context);
   path.finish();
   LostOutputs lost;
-  if (commands) side_output("the command trace", lost, [&] { commands->finish(); });
+  ToolOutput output;
+  tools.close_window();
+  tools.finish(cpu::Counts{}, output, lost);
   if (!options.sets.empty() && path.waited_in_ram())
     Diagnostics::instance().configuration(fmt::format(
         "bursts of the EDMA waited {} core clocks in internal RAM for the core: as in the recorded run, which a run "
@@ -223,13 +220,17 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
        "requests played per host second"},
       peak_rss()};
   dir.write("config.json", config_json(set, experiment, provenance.get()));
-  dir.write("host.json", host_json(host, args, version_text()));
-  dir.write("stats.json", stats_json(stats, complete, collect_warnings(Diagnostics::instance(), true)));
-  dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
-  dir.write("latency.csv", latency_csv(path.latency_rows()));
   const std::vector<SlowestRow> slowest = path.slowest_rows();
-  dir.write("slowest.csv", slowest_csv(slowest));
-  if (around) dir.write("requests.csv", around->csv());
+  std::vector<ResultFile> files = {{"timeline.csv", timeline_csv(path.labels(), path.timeline())},
+                                   {"latency.csv", latency_csv(path.latency_rows())},
+                                   {"slowest.csv", slowest_csv(slowest)}};
+  std::ranges::move(output.files, std::back_inserter(files));
+  write_run(dir,
+            {.stats = stats,
+             .host = host,
+             .complete = complete,
+             .warnings = collect_warnings(Diagnostics::instance(), true)},
+            files, args);
   say_note(dir.commit(complete), context);
   context.out << replay_words(stats, host, slowest);
   context.out << fmt::format("results in {}\n", one_line(dir.folder().string(), std::string::npos)) << std::flush;
@@ -255,6 +256,10 @@ Command add_replay(CLI::App& app) {
             ParamSet params;
             replay.declare(params);
             return keys_of(params);
+          },
+          [o, c](std::span<const ToolRow> rows) {
+            for (const ToolRow& row : rows)
+              if (row.needs == ToolNeeds::kMemory) o->tools.add_to(*c, {&row, 1});
           }};
 }
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -12,9 +13,9 @@
 #include <string_view>
 
 #include "sw/fovea/cli/command_row.h"
-#include "sw/fovea/cli/perfetto_options.h"
 #include "sw/fovea/cli/report_command.h"
 #include "sw/fovea/cli/shared_options.h"
+#include "sw/fovea/cli/tool_options.h"
 #include "sw/fovea/config/experiment.h"
 #include "sw/fovea/config/run_until.h"
 #include "sw/fovea/console/host_console.h"
@@ -26,11 +27,11 @@
 #include "sw/fovea/files/warnings.h"
 #include "sw/fovea/machine/effective.h"
 #include "sw/fovea/machine/progress.h"
-#include "sw/fovea/machine/row_files.h"
 #include "sw/fovea/replay/replay_params.h"
 #include "sw/fovea/results/names.h"
+#include "sw/fovea/results/row_files.h"
 #include "sw/fovea/results/run_dir.h"
-#include "sw/fovea/tools/command_trace.h"
+#include "sw/fovea/results/run_writer.h"
 
 namespace fovea::app {
 namespace {
@@ -43,35 +44,15 @@ struct RunOptions {
   std::string out_dir;
   bool out_given = false;
   std::string sync = "default";
-  bool strict = false, hazards = false, profile = false;
+  bool strict = false;
   bool no_frames = false;
   bool mp4 = false;
-  std::string bus_trace, command_trace, waves, around;
   std::string gdb;
-  RegisterLogRequest registers;
-  PerfettoOptions perfetto;
+  ToolOptions tools;
   LimitOptions limits;
   bool console = false;
   bool report = false;
 };
-
-void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& meter,
-                   const std::vector<std::string>& args, std::vector<StatRow>& host, bool log) {
-  host = result.host;
-  meter.add_host_rows(host);
-  dir.write("stalls.csv", stalls_csv(result.stalls));
-  dir.write("latency.csv", latency_csv(result.latency));
-  dir.write("slowest.csv", slowest_csv(result.slowest));
-  if (!result.around.empty()) dir.write("requests.csv", result.around);
-  for (const ResultFile& f : result.profile.files) dir.write(f.name, f.text);
-  dir.write("uart.log", result.uart);
-  if (!result.typed.empty()) dir.write("uart0.input", result.typed);
-  if (log) dir.write("registers.log", result.registers);
-  dir.write("host.json", host_json(host, args, version_text()));
-  // Written last: if stats.json exists, all other files do.
-  dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
-                                     collect_warnings(Diagnostics::instance()), {result.ended_by, result.kernel}));
-}
 
 /// Adds the keys that only `fovea replay` has, so that an error message can say so.
 void add_replay_keys(ParamSet& params) {
@@ -89,29 +70,11 @@ void add_replay_keys(ParamSet& params) {
     params.add_foreign(core, "does not exist; the core's clock is clocks.arm");
 }
 
-/// --waves is the key waves.file, for which there must be an RTL.
-void set_waves(const std::string& file, const ParamSet& params, Experiment& experiment) {
-  experiment.override_with("waves.file=" + file);
-  const ParamBase* engine = params.find("engine");
-  if (!engine || engine->text() == "none" || engine->text() == "tlm")
-    throw UserError(fmt::format("--waves '{}': it records the RTL of the remap engine, and key 'engine' is {}; "
-                                "allowed: rtl, both, both_tlm",
-                                one_line(file), engine ? engine->text() : "unknown"));
-}
-
 /// Loads the experiment and the overrides of the command line into `params`.
 void load_experiment(const RunOptions& options, ParamSet& params, Experiment& experiment) {
   experiment.load(options.experiment);
   for (const auto& set : options.sets) experiment.override_with(set);
-  if (!options.waves.empty()) set_waves(options.waves, params, experiment);
-}
-
-/// A file that is kept apart from the results must not lie among them. @throws UserError
-void refuse_inside(const RunDir& dir, const char* option, const fs::path& file) {
-  if (file.empty() || !dir.covers(file)) return;
-  throw UserError(fmt::format("{} '{}': it lies in the output folder, which holds the files of a run only; "
-                              "choose a place beside it",
-                              option, one_line(file.string())));
+  options.tools.set_keys(params, experiment);
 }
 
 /// Standard input and output as the board's UART0, with --console.
@@ -136,7 +99,7 @@ class PictureFiles {
       sent_.emplace(FrameWriterOptions{.folder = dir.folder() / "camera",
                                        .folder_fd = dir.make_folder("camera")});
   }
-  void attach(RunRequest& request) {
+  void attach(Request& request) {
     if (wanted_) request.frame = [this](const DisplayedFrame& f) { push(displayed_, f); };
     if (sent_) request.camera = [this](const DisplayedFrame& f) { push(*sent_, f); };
   }
@@ -169,12 +132,12 @@ class PictureFiles {
 };
 
 /// What is said at the end of a run.
-void report_run(const RunOptions& options, const RunResult& result, const std::vector<StatRow>& host,
+void report_run(const RunOptions& options, const Result& result, const std::vector<StatRow>& host,
                 const RunDir& dir, std::ostream& report) {
   report << run_words(result.stats, host, result.slowest);
   if (find(result.stats, names::kRemapTimeMean))
     report << fmt::format("what binds: {}\n", explain::binds_command(options.experiment, options.sets));
-  report << result.profile.table;
+  report << result.table;
   for (const auto& note : result.notes) report << one_line(note) << "\n";
   if (!result.ended.empty()) report << fmt::format("ended by {}\n", result.ended);
   report << fmt::format("results in {}\n", one_line(dir.folder().string(), std::string::npos));
@@ -187,12 +150,12 @@ void report_run(const RunOptions& options, const RunResult& result, const std::v
 }
 
 /// The exit status of a run whose results are written. @throws ModelsDiffer, GuestFailure, UserError
-int run_status(const RunOptions& options, const RunResult& result, bool quit, const CliContext& context) {
+int run_status(const RunOptions& options, const Result& result, bool quit, const CliContext& context) {
   if (!result.untyped.empty())
     context.err << fmt::format("fovea: warning: uart0.input is not over: {}\n", result.untyped);
   if (!result.difference.empty()) throw ModelsDiffer(result.difference);
   if (!result.guest_failure.empty()) throw GuestFailure(result.guest_failure);
-  if (options.strict && !result.hazards.empty()) throw GuestFailure(result.hazards);
+  if (options.strict && !result.fault.empty()) throw GuestFailure(result.fault);
   if (!context.out) throw UserError("the program's output cannot be written");
   if (result.complete && result.exit_code.value_or(0) != 0)
     throw GuestFailure(fmt::format("the program ended with status {}", *result.exit_code));
@@ -203,62 +166,48 @@ int run_status(const RunOptions& options, const RunResult& result, bool quit, co
   return signal ? 128 + signal : kExitGuestFailed;
 }
 
-RunResult run_simulation(Simulation& simulation, const RunRequest& request, ProgressMeter& meter) {
+Result run_machine(Machine& machine, const Request& request, ProgressMeter& meter) {
   try {
-    return simulation.run(request);
+    return machine.run(request);
   } catch (...) {
     meter.finish();
     throw;
   }
 }
 
-/// Folder, `config.json` first, so that an unfinished folder can be recognised as Fovea's and shows what was tried,
-/// and a full disk is noticed before the simulation.
-void begin_folder(RunDir& dir, const RunOptions& options, const PerfettoRequest& perfetto,
-                  std::string_view config) {
-  refuse_inside(dir, "--bus-trace", options.bus_trace);
-  refuse_inside(dir, "--waves", options.waves);
-  refuse_inside(dir, "--perfetto", perfetto.file);
-  if (!options.command_trace.empty()) check_command_trace(options.command_trace, dir);
-  dir.write("config.json", config);
-}
-
 /// Writes the results and makes the folder the valid one. @return what was measured of the host
-std::vector<StatRow> write_run(RunDir& dir, RunResult& result, ProgressMeter& meter,
-                               const std::vector<std::string>& args, const RunOptions& options,
-                               const std::string& experiment, const CliContext& context) {
-  std::vector<StatRow> host;
-  write_results(dir, result, meter, args, host, !options.registers.pattern.empty());
+std::vector<StatRow> write_results(RunDir& dir, Result& result, const ProgressMeter& meter,
+                                   const std::vector<std::string>& args, const RunOptions& options,
+                                   const std::string& experiment, const CliContext& context) {
+  const bool complete = result.complete && result.guest_failure.empty();
+  FinishedRun run{.stats = result.stats,
+                  .host = result.host,
+                  .complete = complete,
+                  .words = {result.ended_by, result.kernel},
+                  .warnings = collect_warnings(Diagnostics::instance())};
+  meter.add_host_rows(run.host);
+  std::vector<ResultFile> files = {{"stalls.csv", stalls_csv(result.stalls)},
+                                   {"latency.csv", latency_csv(result.latency)},
+                                   {"slowest.csv", slowest_csv(result.slowest)},
+                                   {"uart.log", result.uart}};
+  if (!result.typed.empty()) files.push_back({"uart0.input", result.typed});
+  std::ranges::move(result.files, std::back_inserter(files));
+  write_run(dir, run, files, args);
   if (options.report)
     side_output("the report", result.lost, [&] {
       write_report(dir, options.out_given ? fs::path(options.out_dir).filename().string() : experiment);
     });
-  say_note(dir.commit(result.complete && result.guest_failure.empty()), context);
+  say_note(dir.commit(complete), context);
   say_lost(result.lost, context);
   context.out.flush();
-  return host;
+  return run.host;
 }
 
-void take_options(RunRequest& request, const RunOptions& options, const CliContext& context) {
+void take_options(Request& request, const RunOptions& options, const CliContext& context) {
   request.strict_sync = options.sync == "strict";
-  request.profile = options.profile;
-  request.hazards = options.hazards;
-  request.command_trace = options.command_trace;
-  request.bus_trace = options.bus_trace;
-  request.registers = options.registers;
-  if (!options.around.empty()) request.around = parse_time("--around", options.around);
   if (options.gdb.empty()) return;
   request.gdb_port = parse_gdb_port(options.gdb);
   request.notes = &context.err;
-}
-
-/// Adds an option for the name of a file, which is not empty.
-void add_file_option(CLI::App& command, const char* name, std::string& file, const char* help) {
-  command.add_option(name, file, help)
-      ->type_name("FILE")
-      ->each([name](const std::string& s) {
-        if (s.empty()) throw UserError(std::string(name) + " '': a file name is needed");
-      });
 }
 
 CLI::App* add_options(CLI::App& app, RunOptions& run) {
@@ -278,21 +227,10 @@ CLI::App* add_options(CLI::App& app, RunOptions& run) {
   c->add_flag("--strict", run.strict,
               "Stop with an error when the firmware uses a feature that is not modelled, or a parameter that "
               "is set has no effect");
-  add_hazards_option(*c, run.hazards);
-  add_profile_option(*c, run.profile);
   c->add_flag("--no-frames", run.no_frames, "Write no pictures");
   c->add_flag("--mp4", run.mp4, "Also write the displayed frames as display.mp4");
-  add_file_option(*c, "--bus-trace", run.bus_trace,
-                  "Write all requests to the SDRAM in the measured window to this file");
-  add_file_option(*c, "--waves", run.waves,
-                  "Write the waveforms of the RTL remap engine (engine = rtl, both, both_tlm) to this FST file; "
-                  "the keys waves.* choose which part");
-  add_command_trace_option(*c, run.command_trace);
-  add_around_option(*c, run.around);
-  add_perfetto_options(*c, run.perfetto);
   c->add_option("--gdb", run.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
       ->type_name(":PORT");
-  add_register_log_options(*c, run.registers);
   add_limit_options(*c, run.limits);
   c->add_flag("--report", run.report, "Also make report.html: see 'fovea report'");
   c->add_flag("--console", run.console,
@@ -302,10 +240,10 @@ CLI::App* add_options(CLI::App& app, RunOptions& run) {
 
 int run(const RunOptions& options, const std::vector<std::string>& args, const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
-  check_register_log(options.registers, options.gdb);
-  const auto simulation = context.make_simulation();
+  std::vector<AskedTool> tools = options.tools.asked(tools_of(MachineKind::kBoard), !options.gdb.empty());
+  const auto machine = context.make_machine(MachineKind::kBoard);
   ParamSet params;
-  simulation->declare(params);
+  machine->declare(params);
   add_replay_keys(params);
   Experiment experiment(params);
   load_experiment(options, params, experiment);
@@ -320,9 +258,10 @@ int run(const RunOptions& options, const std::vector<std::string>& args, const C
   RunDir dir(options.out_given ? fs::path(options.out_dir)
                                : fs::path("out") / experiment.name(),
              "run");
-  const PerfettoRequest perfetto = perfetto_of(options.perfetto);
-  begin_folder(dir, options, perfetto,
-               config_json(params, experiment, provenance_of(params, simulation->input_files())));
+  options.tools.refuse_inside(dir);
+  // First, so that an unfinished folder can be recognised as Fovea's and shows what was tried, and a full disk is
+  // noticed before the simulation.
+  dir.write("config.json", config_json(params, experiment, provenance_of(params, machine->input_files())));
 
   const auto& stop = context.stop ? *context.stop : kNeverStops;
   HostConsole semihosting(context.out, context.err, context.stop);
@@ -330,28 +269,28 @@ int run(const RunOptions& options, const std::vector<std::string>& args, const C
   // A progress line that is updated in place would overwrite the console's output.
   ProgressMeter meter(context.err, context.terminal && !options.console);
   PictureFiles pictures(options, dir, stop);
-  RunRequest request{.params = params,
-                     .folder = dir.folder(),
-                     .stop = stop,
-                     .progress = meter,
-                     .frame = {},
-                     .perfetto = perfetto,
-                     .limits = limits,
-                     .symbols = symbols ? &*symbols : nullptr,
-                     .console = console.stream ? &*console.stream : nullptr,
-                     .semihosting = &semihosting};
+  RowFiles rows(dir);
+  Request request{.params = params,
+                  .stop = stop,
+                  .progress = meter,
+                  .tools = std::move(tools),
+                  .frame_row = [&rows](const FrameRow& row) { rows.frame(row); },
+                  .timeline_row = [&rows](std::span<const std::string> masters,
+                                          const TimelineRow& row) { rows.timeline(masters, row); },
+                  .limits = limits,
+                  .symbols = symbols ? &*symbols : nullptr,
+                  .console = console.stream ? &*console.stream : nullptr,
+                  .semihosting = &semihosting};
   take_options(request, options, context);
   pictures.attach(request);
-  RowFiles rows(dir);
-  rows.attach(request);
-  RunResult result = run_simulation(*simulation, request, meter);
+  Result result = run_machine(*machine, request, meter);
   console.raw.reset();
   meter.finish();
   pictures.close(result.lost);
 
-  rows.finish(result);
+  rows.finish(result.frames, result.timeline_masters, result.timeline);
   const std::vector<StatRow> host =
-      write_run(dir, result, meter, args, options, experiment.name(), context);
+      write_results(dir, result, meter, args, options, experiment.name(), context);
   // With --console the output stream is reserved for UART0.
   report_run(options, result, host, dir, options.console ? context.err : context.out);
   return run_status(options, result, console.stream && console.stream->quit(), context);
@@ -361,8 +300,8 @@ int run(const RunOptions& options, const std::vector<std::string>& args, const C
 
 std::vector<std::string> keys_of_run(const CliContext& context) {
   ParamSet params;
-  const auto simulation = context.make_simulation();
-  simulation->declare(params);
+  const auto machine = context.make_machine(MachineKind::kBoard);
+  machine->declare(params);
   return keys_of(params);
 }
 
@@ -374,7 +313,7 @@ Command add_run(CLI::App& app) {
             o->out_given = c->count("--out") > 0;
             return run(*o, call.args, call.context);
           },
-          keys_of_run};
+          keys_of_run, [o, c](std::span<const ToolRow> rows) { o->tools.add_to(*c, rows); }};
 }
 
 }  // namespace fovea::app

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/files/run_limits.h"
 #include "sw/fovea/program/elf_image.h"
 
 namespace CLI {
@@ -31,17 +31,5 @@ std::optional<ElfImage> symbols_of(const LimitOptions& options);
 
 /// Adds `-s`, which takes one value each time, because the name of the experiment may follow it.
 void add_set_option(CLI::App& command, std::vector<std::string>& sets);
-/// Adds `--around`.
-void add_around_option(CLI::App& command, std::string& time);
-/// Adds `--command-trace`.
-void add_command_trace_option(CLI::App& command, std::string& file);
-/// Adds `--log-registers` and the option for its size.
-void add_register_log_options(CLI::App& command, RegisterLogRequest& request);
-/// @throws UserError if a size is given although nothing can start a log
-void check_register_log(const RegisterLogRequest& request, const std::string& gdb);
-/// Adds `--hazards`.
-void add_hazards_option(CLI::App& command, bool& hazards);
-/// Adds `--profile`.
-void add_profile_option(CLI::App& command, bool& profile);
 
 }  // namespace fovea::app

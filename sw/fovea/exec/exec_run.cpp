@@ -1,4 +1,4 @@
-// `fovea exec`: its parameters, the selection of the machine, and the machine's statistics.
+// The machines: which one a kind is, and the core with its memory.
 #include <sys/resource.h>
 
 #include <bit>
@@ -7,6 +7,7 @@
 #include "model/board/board_params.h"
 #include "model/common/host_time_slicer.h"
 #include "sw/fovea/board/board_debug.h"
+#include "sw/fovea/board/board_machine.h"
 #include "sw/fovea/exec/exec_board.h"
 #include "sw/fovea/exec/exec_caches.h"
 #include "sw/fovea/exec/flat_machine.h"
@@ -25,8 +26,10 @@ struct ExecParams : ParamGroup {
   ExecParams() : ParamGroup("exec") {}
 };
 
-class BoardExecutor final : public Executor {
+/// Core, crossbar and SDRAM, or the core alone.
+class CoreMachine final : public Machine {
  public:
+  explicit CoreMachine(bool flat) : flat_(flat) {}
   void declare(ParamSet& set) override {
     set.add(cpu_);
     set.add_alone(crossbar_);
@@ -37,13 +40,13 @@ class BoardExecutor final : public Executor {
     set.add(clocks_);
     set.add(exec_);
   }
-  std::uint64_t memory_bytes() const override { return ddr_.size_bytes(); }
-  ExecResult run(const ExecRequest& request) override;
+  Result run(const Request& request) override;
 
  private:
-  ExecResult run_board(const ExecRequest& request, const ExecMap& map, const ExecClocks& clocks);
+  Result run_board(const Request& request, const ExecMap& map, const ExecClocks& clocks);
   void collect_memory(std::vector<StatRow>& rows) const;
 
+  bool flat_;
   cpu::CpuParams cpu_;
   bus::CrossbarParams crossbar_;
   bus::ConfigBusParams config_bus_;
@@ -53,11 +56,11 @@ class BoardExecutor final : public Executor {
   std::unique_ptr<ExecBoard> board_;
 };
 
-ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& map,
+Result CoreMachine::run_board(const Request& request, const ExecMap& map,
                                     const ExecClocks& clocks) {
   board_ = std::make_unique<ExecBoard>("exec", ExecBoardParams{cpu_, crossbar_, config_bus_, ddr_},
                                        map, clocks,
-                                       map.table ? preamble_entry(map) : request.program.entry());
+                                       map.table ? preamble_entry(map) : request.program->image.entry());
   auto& arm = board_->arm;
   // The console belongs to the program, so suppress the kernel's message at the end of the
   // simulation.
@@ -68,8 +71,13 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
   const std::vector<RegisterBlock> blocks = register_blocks(board_->platform);
   const auto log = register_log(blocks, board_->config, arm.core(),
                                 [&](std::uint32_t pc) { return session.describe(pc); });
-  log->keep(request.registers.kept);
-  if (!request.registers.pattern.empty()) log->start(request.registers);
+  session.attach_tools({.params = request.params,
+                        .controller = &board_->ddr.controller(),
+                        .observe = [this](MemObserver& o) { return board_->scr.crossbar().observe(o); },
+                        .name_of = [](Master m) { return std::string(stat_name(m)); },
+                        .now = [] { return kernel_time(); },
+                        .log = log.get(),
+                        .memory = &board_->scr.memory()});
   session.attach(*board_, [&](GdbViews& v) {
     v.blocks = blocks;
     v.log = log.get();
@@ -103,31 +111,29 @@ ExecResult BoardExecutor::run_board(const ExecRequest& request, const ExecMap& m
     }
     before = now;
   }
-  ExecResult result = session.result(failure);
-  if (!request.registers.pattern.empty()) result.registers = log->text();
   board_->scr.settle();
   board_->ddr.settle(kernel_time());
+  Result result = session.result(failure);
   collect_memory(result.stats);
   return result;
 }
 
-void BoardExecutor::collect_memory(std::vector<StatRow>& rows) const {
+void CoreMachine::collect_memory(std::vector<StatRow>& rows) const {
   board_->platform.each_statistics([&](const StatGroup& group) { collect(group, rows); });
 }
 
-ExecResult BoardExecutor::run(const ExecRequest& request) {
+Result CoreMachine::run(const Request& request) {
   const auto started = Wall::now();
   for (const auto* cache : {&cpu_.icache, &cpu_.dcache})
     if (!std::has_single_bit(cache->size()))
       throw UserError("key '" + cache->size.key() + "': '" + cache->size.text() +
                       "' is not allowed; allowed: powers of two");
   const ExecMap map =
-      request.program.map(memory_bytes(), parse_ram_base(exec_.ram_base(), memory_bytes()),
-                          request.caches);
+      request.program->image.map(ddr_.size_bytes(), parse_ram_base(exec_.ram_base(), ddr_.size_bytes()),
+                                 request.program->caches);
   ExecClocks clocks = ExecClocks::of({clocks_.preset(), clocks_.arm(), clocks_.ddr()});
   if (clocks_.crossbar() != 0) clocks.scr = Frequency(clocks_.crossbar());
-  ExecResult result = request.fast_memory ? run_flat(request, cpu_, map, clocks.core)
-                                          : run_board(request, map, clocks);
+  Result result = flat_ ? run_flat(request, cpu_, map, clocks.core) : run_board(request, map, clocks);
   result.core_clock = clocks.core;
   const std::chrono::duration<double> wall = Wall::now() - started;
   result.host.push_back(wall_time(wall.count(), "the run"));
@@ -137,6 +143,14 @@ ExecResult BoardExecutor::run(const ExecRequest& request) {
 
 }  // namespace
 
-std::unique_ptr<Executor> make_executor() { return std::make_unique<BoardExecutor>(); }
+std::unique_ptr<Machine> make_machine(MachineKind kind) {
+  switch (kind) {
+    case MachineKind::kBoard:
+    case MachineKind::kProgramBoard: return make_board(kind == MachineKind::kProgramBoard);
+    case MachineKind::kCore:
+    case MachineKind::kFlat: break;
+  }
+  return std::make_unique<CoreMachine>(kind == MachineKind::kFlat);
+}
 
 }  // namespace fovea::app

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "sw/fovea/exec/exec_caches.h"
-#include "sw/fovea/probes/run_profile.h"
 #include "sw/fovea/results/names.h"
 #include "sw/fovea/tools/stall_regions.h"
 
@@ -20,11 +19,11 @@ namespace {
 constexpr std::uint32_t kUndefinedWord = 0xE7F000F0u;
 constexpr unsigned kVectors = 8;
 
-SemihostingSettings settings(const ExecRequest& request, const ExecMap& map) {
+SemihostingSettings settings(const Request& request, const ExecMap& map) {
   SemihostingSettings s;
-  s.root = request.root;
-  std::vector<std::string> line = {request.program.name()};
-  line.insert(line.end(), request.arguments.begin(), request.arguments.end());
+  s.root = request.program->root;
+  std::vector<std::string> line = {request.program->image.name()};
+  line.insert(line.end(), request.program->arguments.begin(), request.program->arguments.end());
   s.command_line = guest_command_line(line);
   s.heap_base = map.free_base;
   s.heap_limit = s.stack_limit = map.heap_limit();
@@ -39,20 +38,19 @@ ExecClocks ExecClocks::of(const WantedClocks& wanted) {
   return {s.core(), s.ddr(), s.scr()};
 }
 
-ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,
+ExecSession::ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const Request& request,
                          const ExecMap& map, std::span<const MemoryRegion> registers)
     : core_(core),
       request_(request),
-      program_(request.program),
-      symbols_(request.program.image(), request.symbols),
+      program_(request.program->image),
+      symbols_(request.program->image.image(), request.symbols),
       map_(map),
-      semihosting_(core, memory, settings(request, map), request.console,
+      semihosting_(core, memory, settings(request, map), *request.semihosting,
                    [this] { return over(); }) {
   core_.set_regions(exec_regions(program_, map_, registers));
-  if (request.profile) core_.start_profile().stacks.set_functions(program_functions(programs()));
 }
 
-ExecSession::~ExecSession() { request_.console.go_on = nullptr; }
+ExecSession::~ExecSession() { request_.semihosting->go_on = nullptr; }
 
 void ExecSession::load(std::span<std::uint8_t> ram, std::span<std::uint8_t> tcm) {
   const auto put = [&](std::uint32_t address, std::span<const std::uint8_t> bytes) {
@@ -86,7 +84,7 @@ std::string ExecSession::failure_text(const std::string& what) const {
 
 std::string ExecSession::look(Picoseconds now) {
   const std::uint64_t executed = core_.instructions_executed();
-  if (request_.progress) request_.progress->update({now, 0, 0, executed});
+  request_.progress.update({now, 0, 0, executed});
   return request_.limits.reached(now, executed);
 }
 
@@ -109,23 +107,32 @@ void ExecSession::attach(cpu::DebugMemory& memory, const std::function<void(GdbV
   views.memory = {{map_.ram_base, map_.ram_base + map_.ram_size}};
   if (add) add(views);
   gdb_ = std::make_unique<GdbSession>(*request_.gdb_port, core_, memory, std::move(views),
-                                      request_.stop, request_.notes);
-  request_.console.go_on = [this] {
+                                      request_.stop, *request_.notes);
+  request_.semihosting->go_on = [this] {
     gdb_->poll_during_input();
     return !gdb_->killed();
   };
 }
 
-ExecResult ExecSession::result(const std::string& failure) {
-  ExecResult out;
+void ExecSession::attach_tools(ToolParts parts) {
+  parts.core = &core_;
+  parts.program = program_.name();
+  parts.symbols = &symbols_;
+  parts.programs = {program_.image(), request_.symbols};
+  tools_.make(request_.tools, parts);
+  tools_.open_window();
+}
+
+Result ExecSession::result(const std::string& failure) {
+  Result out;
   out.complete = ended();
-  out.exit_code = semihosting_.exit_code().value_or(0);
+  out.exit_code = semihosting_.exit_code();
   if (!failure.empty()) out.guest_failure = failure_text(failure);
   if (gdb_ && !failure.empty()) gdb_->failed(out.guest_failure);
   out.killed = gdb_ && gdb_->killed();
   if (gdb_) {
     const bool stopped = !out.complete && failure.empty();
-    gdb_->exited(stopped ? SIGTERM : failure.empty() ? out.exit_code : 3, stopped);
+    gdb_->exited(stopped ? SIGTERM : failure.empty() ? out.exit_code.value_or(0) : 3, stopped);
   }
   out.stats = core_stats();
   const cpu::Counts& c = core_.counts();
@@ -133,23 +140,9 @@ ExecResult ExecSession::result(const std::string& failure) {
                   std::get<std::uint64_t>(find(out.stats, names::kCpuCycles)->value),
               "every clock of the core has one cause");
   out.stalls = stall_rows({}, c, core_.regions());
-  if (request_.profile) side_output("the profile", out.lost, [&] { out.profile = profile(); });
+  tools_.close_window();
+  tools_.finish(c, out, out.lost);
   return out;
-}
-
-std::array<const ElfImage*, 2> ExecSession::programs() const {
-  return {program_.image(), request_.symbols};
-}
-
-ProfileResult ExecSession::profile() const {
-  core_.finish_profile(core_.counts());
-  ProfileData data;
-  data.program = program_.name();
-  data.regions = core_.regions().names();
-  data.phases = {{"run", true, core_.profile()->rows(0), core_.profile()->stacks.paths_of(0)}};
-  add_stacks(data, core_.profile()->stacks);
-  data.masked = core_.profile()->mask.longest();
-  return profile_result(data, programs());
 }
 
 }  // namespace fovea::app

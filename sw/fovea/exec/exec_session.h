@@ -9,7 +9,7 @@
 #include "sw/fovea/config/clock_setting.h"
 #include "sw/fovea/console/core_semihosting.h"
 #include "sw/fovea/debug/gdb_session.h"
-#include "sw/fovea/machine/executor.h"
+#include "sw/fovea/machine/machine.h"
 #include "sw/fovea/program/symbols.h"
 
 namespace fovea::app {
@@ -18,7 +18,7 @@ class ExecSession {
  public:
   /// Uses the core's SWI hook.
   /// @param registers where the machine has registers, for the stall statistics
-  ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const ExecRequest& request,
+  ExecSession(cpu::Core& core, cpu::DebugMemory& memory, const Request& request,
               const ExecMap& map, std::span<const MemoryRegion> registers = {});
   ~ExecSession();
   ExecSession(const ExecSession&) = delete;
@@ -32,27 +32,28 @@ class ExecSession {
   GdbSession* gdb() { return gdb_.get(); }
   bool ended() const { return semihosting_.exit_code().has_value(); }
   /// True if the program has ended or the run is to end: no further instruction may be executed.
-  bool over() const { return ended() || request_.stop.load() || request_.console.lost(); }
+  bool over() const { return ended() || request_.stop.load() || request_.semihosting->lost(); }
   /// The symbol of an address in the request's symbol tables, as "name+0x12".
   std::string describe(std::uint32_t address) const { return symbols_.describe(address); }
   /// To be called now and then: reports progress. @return the option whose limit is reached, or ""
   std::string look(Picoseconds now);
+  /// Makes the tools, whose window is the whole run. `parts` lacks what the core has.
+  void attach_tools(ToolParts parts);
   /// The result with the core's figures; `failure` is empty if the guest did not fail.
-  ExecResult result(const std::string& failure);
+  Result result(const std::string& failure);
 
  private:
   std::string failure_text(const std::string& what) const;
   std::vector<StatRow> core_stats() const;
-  std::array<const ElfImage*, 2> programs() const;
-  ProfileResult profile() const;
 
   cpu::Core& core_;
-  const ExecRequest& request_;
+  const Request& request_;
   const ExecProgram& program_;
   Symbols symbols_;
   ExecMap map_;
   CoreSemihosting semihosting_;
   std::unique_ptr<GdbSession> gdb_;
+  Tools tools_;
 };
 
 /// The clocks of core, crossbar and SDRAM.

@@ -45,7 +45,7 @@ bool FlatMemoryPort::debug_write(std::uint32_t pa, std::span<const std::uint8_t>
   return true;
 }
 
-ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& params, const ExecMap& map,
+Result run_flat(const Request& request, const cpu::CpuParams& params, const ExecMap& map,
                     Frequency core_clock) {
   std::array<std::uint8_t, INTERNAL_RAM_BYTES> internal_ram{};
   const auto tcm = std::span(internal_ram).first(map.tcm ? internal_ram.size() : 0);
@@ -53,6 +53,7 @@ ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& params, co
   cpu::Core core(params, port, tcm);
   ExecSession session(core, port, request, map);
   session.load(port.ram(), tcm);
+  session.attach_tools({.params = request.params});
   session.attach(port);
   std::string limit;
   port.on_slice = [&] {
@@ -63,7 +64,7 @@ ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& params, co
   core.set_clock(core_clock, 0);
   std::string failure;
   try {
-    core.reset(map.table ? preamble_entry(map) : request.program.entry(), 0);
+    core.reset(map.table ? preamble_entry(map) : request.program->image.entry(), 0);
     core.run();
   } catch (const GuestFailure& e) {
     failure = e.what();

@@ -4,7 +4,7 @@
 
 #include "model/cpu/core/debug.h"
 #include "model/mem/core/backing_store.h"
-#include "sw/fovea/machine/executor.h"
+#include "sw/fovea/machine/machine.h"
 
 namespace fovea::app {
 
@@ -36,7 +36,7 @@ class FlatMemoryPort final : public cpu::BusPort, public cpu::DebugMemory {
 };
 
 /// Runs the request on such a machine.
-ExecResult run_flat(const ExecRequest& request, const cpu::CpuParams& cpu, const ExecMap& map,
+Result run_flat(const Request& request, const cpu::CpuParams& cpu, const ExecMap& map,
                     Frequency core_clock);
 
 }  // namespace fovea::app

@@ -23,7 +23,7 @@ class Session {
 
   /// The parameters with these settings. @throws UserError
   std::unique_ptr<app::EffectiveRun> effective(const Settings& settings) const {
-    return app::effective_run(context_.make_simulation, experiment_, settings);
+    return app::effective_run(context_.make_machine, experiment_, settings);
   }
   /// Runs the experiment with `settings` and, after them, `more`, which is what the progress line
   /// shows unless there is a `label`. @throws UserError for settings that are not allowed

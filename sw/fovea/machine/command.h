@@ -6,8 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "sw/fovea/machine/executor.h"
-#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/machine/machine.h"
 
 namespace fovea::app {
 
@@ -26,8 +25,8 @@ struct CliContext {
   std::ostream& out;
   std::ostream& err;
   bool terminal = false;  ///< true if err is a terminal
-  std::function<std::unique_ptr<Simulation>()> make_simulation;
-  std::function<std::unique_ptr<Executor>()> make_executor = nullptr;
+  MakeMachine make_machine = nullptr;
+  std::vector<ToolRow> tools = {};  ///< of the machines; outlives the command
   const std::atomic<int>* signal = nullptr;  ///< the signal that requested a stop; 0: none
   const std::atomic<bool>* stop = nullptr;   ///< set together with `signal`
 };

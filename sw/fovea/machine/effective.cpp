@@ -14,11 +14,10 @@ std::string complete_experiment(const ParamSet& params, Experiment& experiment) 
 }
 
 std::unique_ptr<EffectiveRun> effective_run(
-    const std::function<std::unique_ptr<Simulation>()>& make_simulation,
-    const std::string& experiment, const std::vector<std::string>& settings) {
+    const MakeMachine& make_machine, const std::string& experiment, const std::vector<std::string>& settings) {
   auto out = std::make_unique<EffectiveRun>();
-  out->simulation = make_simulation();
-  out->simulation->declare(out->params);
+  out->machine = make_machine(MachineKind::kBoard);
+  out->machine->declare(out->params);
   out->experiment.load(experiment);
   for (const std::string& s : settings) out->experiment.override_with(s);
   out->shared = complete_experiment(out->params, out->experiment);
@@ -29,7 +28,7 @@ std::string identity_of(const EffectiveRun& run, const std::string& program) {
   std::string out = "program " + program + "\n";
   std::map<std::string, std::string> hashes;
   for (const auto& [key, hash] :
-       provenance_of(run.params, run.simulation->input_files()).inputs)
+       provenance_of(run.params, run.machine->input_files()).inputs)
     if (!hash.empty()) hashes[key] = hash;
   for (const ParamBase* p : run.params.all()) {
     const auto hash = hashes.find(p->key());

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "sw/fovea/config/experiment.h"
-#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/machine/machine.h"
 
 namespace fovea::app {
 
 /// The parameters of an experiment with some settings, as a run would have them.
 struct EffectiveRun {
-  std::unique_ptr<Simulation> simulation;
+  std::unique_ptr<Machine> machine;
   ParamSet params;
   Experiment experiment{params};
   std::string shared;  ///< what share_pictures() says
@@ -25,8 +25,7 @@ std::string complete_experiment(const ParamSet& params, Experiment& experiment);
 
 /// Reads the experiment, applies the settings and completes it. @throws UserError
 std::unique_ptr<EffectiveRun> effective_run(
-    const std::function<std::unique_ptr<Simulation>()>& make_simulation,
-    const std::string& experiment, const std::vector<std::string>& settings);
+    const MakeMachine& make_machine, const std::string& experiment, const std::vector<std::string>& settings);
 
 /// The hash of the program, every value of a parameter, and the hashes of all files that are read: a
 /// line each. Of a file that is read, the contents count and not its name, except for what is behind

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/machine/machine.h"
 
 namespace fovea::app {
 

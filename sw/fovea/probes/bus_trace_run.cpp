@@ -6,6 +6,7 @@
 #include "model/trace/core/text_trace.h"
 #include "model/trace/core/trace_file.h"
 #include "sw/fovea/replay/replay_params.h"
+#include "sw/fovea/tools/tool.h"
 
 namespace fovea::app {
 namespace {
@@ -54,6 +55,34 @@ void BusTraceRun::finish() {
                             ddr_.frequency);
   recorder_->finish(std::move(info), [this](std::string_view bytes) { file_.write(bytes); });
   file_.commit();
+}
+
+namespace {
+
+class BusTraceTool final : public Tool {
+ public:
+  BusTraceTool(const std::string& file, const ToolParts& parts) : trace_(file, parts.params, *parts.board) {}
+  void open_window() override { trace_.open(); }
+  void close_window() override { trace_.close(); }
+  void finish(const cpu::Counts&, ToolOutput&) override { trace_.finish(); }
+
+ private:
+  BusTraceRun trace_;
+};
+
+}  // namespace
+
+ToolRow bus_trace_tool() {
+  return {.what = "the bus trace",
+          .needs = ToolNeeds::kBoard,
+          .lacks = "there is no window of displayed frames",
+          .options = {{"--bus-trace", "FILE", "Write all requests to the SDRAM in the measured window to this file",
+                       "a file name is needed"}},
+          .make = [](const ToolValues& v, const ToolParts& parts) -> std::unique_ptr<Tool> {
+            if (parts.whole_run)
+              throw UserError("--bus-trace records the window of displayed frames; allowed: with frames in 'run.until'");
+            return std::make_unique<BusTraceTool>(v.text("--bus-trace"), parts);
+          }};
 }
 
 }  // namespace fovea::app

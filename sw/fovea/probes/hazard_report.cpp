@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "sw/fovea/tools/tool.h"
+
 namespace fovea::app {
 namespace {
 
@@ -102,6 +104,36 @@ std::string HazardReport::failure() const {
   if (n == 0) return {};
   return fmt::format("{} coherency hazard{} at {} place{} (--hazards with --strict)", n, n == 1 ? "" : "s",
                      checker_.places(), checker_.places() == 1 ? "" : "s");
+}
+
+namespace {
+
+class HazardTool final : public Tool {
+ public:
+  explicit HazardTool(const ToolParts& parts)
+      : report_(*parts.core, *parts.memory, *parts.symbols) {}
+  void settle(Picoseconds until) override { report_.settle(until); }
+  void finish(const cpu::Counts&, ToolOutput& output) override {
+    report_.collect(output.stats);
+    output.fault = report_.failure();
+  }
+
+ private:
+  HazardReport report_;
+};
+
+}  // namespace
+
+ToolRow hazards_tool() {
+  return {.what = "the check of coherency",
+          .needs = ToolNeeds::kBoard,
+          .lacks = "there is no DMA",
+          .options = {{"--hazards", "",
+                       "Warn where the core and a DMA master see different memory, because a line of the "
+                       "D-cache is stale or dirty; with --strict that is an error at the end"}},
+          .make = [](const ToolValues&, const ToolParts& parts) -> std::unique_ptr<Tool> {
+            return std::make_unique<HazardTool>(parts);
+          }};
 }
 
 }  // namespace fovea::app

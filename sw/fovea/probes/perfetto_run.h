@@ -11,11 +11,24 @@
 
 #include "model/board/board.h"
 #include "model/common/mem_observer.h"
-#include "sw/fovea/machine/perfetto_request.h"
 #include "sw/fovea/probes/perfetto_file.h"
 #include "sw/fovea/probes/perfetto_functions.h"
 
 namespace fovea::app {
+
+/// What `--perfetto` and its companions ask for.
+struct PerfettoRequest {
+  std::filesystem::path file = {};
+  std::string tracks = ".";  ///< regular expression (RE2); part of GROUP/TRACK
+  /// When the recording begins: a time since power-up, or with the window.
+  std::string from = "window";
+  Picoseconds duration = kNever;  ///< and for how long
+  /// "": records until the duration is over. Otherwise the recording ends `duration` after the first
+  /// displayed frame that was dropped before, repeated, or had an underflow: the file then holds what led
+  /// there.
+  std::string trigger = "";
+  std::uint64_t megabytes = 64;  ///< of events that are kept: the first ones, with a trigger the newest
+};
 
 class PerfettoRun final : private MemObserver {
  public:

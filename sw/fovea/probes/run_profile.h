@@ -12,6 +12,9 @@
 
 namespace fovea::app {
 
+/// The row of frames.csv.
+FrameRow row_of(const board::FrameRecord& record);
+
 /// Puts what a core's profile counted of call stacks into `data`.
 void add_stacks(ProfileData& data, const cpu::CallStacks& stacks);
 
@@ -25,7 +28,7 @@ class RunProfile {
   /// The window begins or ends now; as Core::mark_window().
   void window(bool open);
   /// A frame of the window was displayed.
-  void frame(const FrameRow& row) { frames_.push_back(row); }
+  void frame(const board::FrameRecord& record) { frames_.push_back(row_of(record)); }
   /// @param end the core's counters at the end of the window, or at the end of the run
   ProfileData finish(const cpu::Counts& end, const std::string& program);
   /// After finish().

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <string>
 
-#include "model/common/check.h"
+#include "sw/fovea/tools/tool.h"
 
 namespace fovea::app {
 namespace {
@@ -33,13 +33,6 @@ Shown shown(mem::Cmd cmd) {
 }
 
 }  // namespace
-
-void check_command_trace(const std::string& file, const RunDir& dir) {
-  if (dir.covers(file))
-    throw UserError("--command-trace '" + one_line(file) +
-                    "': it lies in the output folder, which holds the files of a run only; choose a place "
-                    "beside it");
-}
 
 CommandTrace::CommandTrace(const std::filesystem::path& file)
     : file_(file, "--command-trace", "a command trace",
@@ -88,6 +81,34 @@ void CommandTrace::line(std::uint64_t clock, std::string_view command, bool bank
   } catch (...) {
     failure_ = std::current_exception();
   }
+}
+
+namespace {
+
+class CommandTraceTool final : public Tool {
+ public:
+  CommandTraceTool(const std::string& file, const ToolParts& parts) : trace_(file), parts_(parts) {}
+  void open_window() override { trace_.begin(*parts_.controller, parts_.now()); }
+  void close_window() override { trace_.end(); }
+  void finish(const cpu::Counts&, ToolOutput&) override { trace_.finish(); }
+
+ private:
+  CommandTrace trace_;
+  ToolParts parts_;
+};
+
+}  // namespace
+
+ToolRow command_trace_tool() {
+  return {.what = "the command trace",
+          .needs = ToolNeeds::kMemory,
+          .lacks = "there is no SDRAM",
+          .options = {{"--command-trace", "FILE",
+                       "Write the commands on the SDRAM's bus to this file: clock,command,bank,row",
+                       "a file name is needed"}},
+          .make = [](const ToolValues& v, const ToolParts& parts) -> std::unique_ptr<Tool> {
+            return std::make_unique<CommandTraceTool>(v.text("--command-trace"), parts);
+          }};
 }
 
 }  // namespace fovea::app

@@ -8,12 +8,8 @@
 
 #include "model/mem/core/ddr_controller.h"
 #include "sw/fovea/files/output_file.h"
-#include "sw/fovea/results/run_dir.h"
 
 namespace fovea::app {
-
-/// @throws UserError if the file would lie in the folder of results
-void check_command_trace(const std::string& file, const RunDir& dir);
 
 /// Lines `clock,command,bank,row`. Clock k is the k-th edge of the SDRAM's clock since that clock
 /// started. Commands are ACT, PRE, PREA, RD, WR, RDA, WRA (with auto-precharge), REF, PDE, PDX

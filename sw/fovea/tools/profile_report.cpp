@@ -410,23 +410,24 @@ std::string profile_text(const ProfileData& data, SourceLines& lines) {
   return out;
 }
 
-ProfileResult profile_result(const ProfileData& data, std::span<const ElfImage* const> programs) {
+ToolOutput profile_result(const ProfileData& data, std::span<const ElfImage* const> programs) {
   SourceLines lines;
   for (const ElfImage* const p : programs)
     if (p) lines.add(*p);
   constexpr std::size_t kFunctions = 12;
-  std::string table = profile_table(data, lines, kFunctions);
+  ToolOutput out;
+  out.table = profile_table(data, lines, kFunctions);
   if (!lines.have_lines())
-    table += "  the program has no debug information: the profile knows functions, but no lines\n";
-  return {{{"profile.csv", profile_csv(data, lines, PollLoops(programs))},
-           {"paths.csv", paths_csv(data, lines)},
-           {"objects.csv", objects_csv(programs)},
-           {"profile.folded", profile_folded(data, lines)},
-           {"profile.callgrind", profile_callgrind(data, lines)},
-           {"profile.txt", profile_text(data, lines)},
-           {"interrupts.csv", interrupts_csv(data)},
-           {"functions.csv", functions_csv(data, lines, programs)}},
-          table};
+    out.table += "  the program has no debug information: the profile knows functions, but no lines\n";
+  out.files = {{"profile.csv", profile_csv(data, lines, PollLoops(programs))},
+               {"paths.csv", paths_csv(data, lines)},
+               {"objects.csv", objects_csv(programs)},
+               {"profile.folded", profile_folded(data, lines)},
+               {"profile.callgrind", profile_callgrind(data, lines)},
+               {"profile.txt", profile_text(data, lines)},
+               {"interrupts.csv", interrupts_csv(data)},
+               {"functions.csv", functions_csv(data, lines, programs)}};
+  return out;
 }
 
 }  // namespace fovea::app

@@ -9,6 +9,7 @@
 #include "model/cpu/core/clock_profile.h"
 #include "sw/fovea/program/poll_loops.h"
 #include "sw/fovea/program/source_lines.h"
+#include "sw/fovea/tools/tool.h"
 
 namespace fovea::app {
 
@@ -50,11 +51,6 @@ struct ProfileData {
 /// lies in no function goes on to the next one.
 std::vector<cpu::CallStacks::Function> program_functions(std::span<const ElfImage* const> programs);
 
-/// A file of a run's folder.
-struct ResultFile {
-  std::string name, text;
-};
-
 /// profile.csv: `phase,function,file,line,cause,region,culprit,clocks,instructions,inlined_in,polls`, a row
 /// for each combination with clocks. Instructions are counted in the rows of `issue`. `inlined_in`: the
 /// functions that hold the inlined one, outermost first, each as `function|file`, with `;` between them.
@@ -84,12 +80,8 @@ std::string functions_csv(const ProfileData& data, SourceLines& lines,
 /// The functions with most clocks of the window.
 std::string profile_table(const ProfileData& data, SourceLines& lines, std::size_t functions);
 
-/// What a run leaves of its profile.
-struct ProfileResult {
-  std::vector<ResultFile> files;  ///< all of these
-  std::string table;  ///< for the user: the functions with most clocks, and what is missing
-};
+/// All of these files and, for the user, the functions with most clocks and what is missing.
 /// @param programs in whose names and lines the profile speaks; null: none
-ProfileResult profile_result(const ProfileData& data, std::span<const ElfImage* const> programs);
+ToolOutput profile_result(const ProfileData& data, std::span<const ElfImage* const> programs);
 
 }  // namespace fovea::app

@@ -151,4 +151,49 @@ std::string RegisterLog::text(std::size_t most) const {
   return count_ > shown ? fmt::format("({} earlier accesses are not shown)\n", count_ - shown) + out : out;
 }
 
+namespace {
+
+class RegisterLogTool final : public Tool {
+ public:
+  explicit RegisterLogTool(const RegisterLog& log) : log_(log) {}
+  void finish(const cpu::Counts&, ToolOutput& output) override {
+    output.files.push_back({"registers.log", log_.text(), true});
+  }
+
+ private:
+  const RegisterLog& log_;
+};
+
+/// The size holds also for a log that the debugger starts.
+std::unique_ptr<Tool> start_log(const ToolValues& v, const ToolParts& parts) {
+  const RegisterLogRequest request{v.text("--log-registers"),
+                                   v.number("--log-registers-kept", RegisterLogRequest{}.kept)};
+  parts.log->keep(request.kept);
+  if (request.pattern.empty()) return nullptr;
+  parts.log->start(request);
+  return std::make_unique<RegisterLogTool>(*parts.log);
+}
+
+}  // namespace
+
+ToolRow register_log_tool() {
+  return {.what = "the register log",
+          .needs = ToolNeeds::kRegisters,
+          .lacks = "there are no registers",
+          .options = {{"--log-registers", "REGEX",
+                       "Log accesses to registers whose BLOCK.REGISTER matches this regular expression",
+                       "a regular expression is needed; '.' takes all"},
+                      {.name = "--log-registers-kept",
+                       .type = "N",
+                       .help = "Keep the last N accesses; also of a log that GDB begins",
+                       .fallback = "4096",
+                       .least = 1,
+                       .most = kRegisterLogMost}},
+          .make = start_log,
+          .check = [](const ToolValues& v, bool debugger) {
+            if (!v.given("--log-registers") && !debugger)
+              throw UserError("--log-registers-kept: nothing is logged; allowed: with --log-registers or --gdb");
+          }};
+}
+
 }  // namespace fovea::app

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <tuple>
 
 #include "sw/fovea/results/outputs.h"
 
@@ -87,26 +86,6 @@ std::vector<SlowestRow> slowest_of_each(std::span<const SlowestRow> rows) {
       *same = r;
   }
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.latency > b.latency; });
-  return out;
-}
-
-void RequestsAround::responded(const MemRequest& r) {
-  if (r.issued > to_ || r.last < from_) return;
-  seen_.push_back({r.issued, r.first, r.last, r.address, r.master, r.bytes, r.in_path.priority, r.write});
-}
-
-std::string RequestsAround::csv() const {
-  std::vector<Seen> sorted = seen_;
-  // The order in which outcomes are decided depends on who runs ahead.
-  std::sort(sorted.begin(), sorted.end(), [](const Seen& a, const Seen& b) {
-    return std::tuple(a.issued, index(a.master), a.last, a.address) <
-           std::tuple(b.issued, index(b.master), b.last, b.address);
-  });
-  std::string out = "master,direction,port,address,bytes,issued_ns,first_ns,last_ns,priority\n";
-  for (const Seen& s : sorted)
-    out += fmt::format("{},{},{},0x{:08x},{},{},{},{},{}\n", csv_field(name_of_(s.master)), s.write ? "write" : "read",
-                       master_info(s.master).name, s.address, s.bytes, ns_text(s.issued), ns_text(s.first),
-                       ns_text(s.last), s.priority);
   return out;
 }
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "model/bus/core/latency_stats.h"
-#include "model/common/mem_observer.h"
 
 namespace fovea::app {
 
@@ -41,30 +40,5 @@ std::vector<std::pair<std::string, Picoseconds>> slowest_parts(const SlowestRow&
 std::string slowest_when(const SlowestRow& row);
 /// Of each master the slower of its two directions, the slowest first.
 std::vector<SlowestRow> slowest_of_each(std::span<const SlowestRow> rows);
-
-/// `--around TIME`: all requests to the SDRAM whose time, from issue to last beat, touches TIME +- 2 us, as a
-/// master sees them.
-class RequestsAround final : public MemObserver {
- public:
-  static constexpr Picoseconds kReach = 2 * kPsPerUs;
-  RequestsAround(Picoseconds at, std::function<std::string(Master)> name_of)
-      : from_(at > kReach ? at - kReach : 0), to_(at + kReach), name_of_(std::move(name_of)) {}
-  void submitted(const MemRequest&, bool) override {}
-  void responded(const MemRequest& r) override;
-  /// master,direction,port,address,bytes,issued_ns,first_ns,last_ns,priority, in the order of their issue.
-  std::string csv() const;
-
- private:
-  struct Seen {
-    Picoseconds issued, first, last;
-    std::uint32_t address;
-    Master master;
-    std::uint8_t bytes, priority;
-    bool write;
-  };
-  Picoseconds from_, to_;
-  std::function<std::string(Master)> name_of_;
-  std::vector<Seen> seen_;
-};
 
 }  // namespace fovea::app

@@ -1,17 +1,10 @@
-#include "sw/fovea/machine/row_files.h"
+#include "sw/fovea/results/row_files.h"
 
 namespace fovea::app {
 
 RowFiles::RowFiles(RunDir& dir)
     : frames_(dir.create("frames.csv")), timeline_(dir.create("timeline.csv")) {
   frames_->write(frames_csv_header());
-}
-
-void RowFiles::attach(RunRequest& request) {
-  request.frame_row = [this](const FrameRow& row) { frame(row); };
-  request.timeline_row = [this](std::span<const std::string> masters, const TimelineRow& row) {
-    timeline(masters, row);
-  };
 }
 
 void RowFiles::frame(const FrameRow& row) { frames_->write(frames_csv_line(row)); }
@@ -26,10 +19,11 @@ void RowFiles::timeline_header(std::span<const std::string> masters) {
   has_header_ = true;
 }
 
-void RowFiles::finish(const RunResult& result) {
-  for (const FrameRow& row : result.frames) frame(row);
-  timeline_header(result.timeline_masters);
-  for (const TimelineRow& row : result.timeline) timeline(result.timeline_masters, row);
+void RowFiles::finish(std::span<const FrameRow> frames, std::span<const std::string> masters,
+                      std::span<const TimelineRow> rows) {
+  for (const FrameRow& row : frames) frame(row);
+  timeline_header(masters);
+  for (const TimelineRow& row : rows) timeline(masters, row);
   frames_->close();
   timeline_->close();
 }

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "sw/fovea/machine/simulation.h"
+#include "sw/fovea/results/outputs.h"
 #include "sw/fovea/results/run_dir.h"
 
 namespace fovea::app {
@@ -14,14 +14,13 @@ class RowFiles {
  public:
   /// Creates both files. @throws UserError
   explicit RowFiles(RunDir& dir);
-  /// Lets the board deliver its rows to this object, which must outlive the run of `request`.
-  void attach(RunRequest& request);
-  /// Writes the rows that are part of the result, and closes the files. @throws UserError
-  void finish(const RunResult& result);
-
- private:
   void frame(const FrameRow& row);
   void timeline(std::span<const std::string> masters, const TimelineRow& row);
+  /// Writes the last rows, which come with the result, and closes the files. @throws UserError
+  void finish(std::span<const FrameRow> frames, std::span<const std::string> masters,
+              std::span<const TimelineRow> timeline);
+
+ private:
   void timeline_header(std::span<const std::string> masters);
   std::unique_ptr<CheckedFile> frames_, timeline_;
   bool has_header_ = false;  ///< for timeline.csv, whose header names the masters
