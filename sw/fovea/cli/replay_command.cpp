@@ -214,6 +214,7 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
 
   std::vector<StatRow> stats = path.stats();
   add_remap_rows(path, stats);
+  stats.insert(stats.end(), output.stats.begin(), output.stats.end());
   const std::vector<StatRow> host = {
       wall_time(wall, "the whole replay"),
       {"requests_per_second", wall > 0 ? static_cast<double>(path.requests()) / wall : 0.0, "1/s",
@@ -233,6 +234,7 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
             files, args);
   say_note(dir.commit(complete), context);
   context.out << replay_words(stats, host, slowest);
+  for (const std::string& note : output.notes) context.out << one_line(note) << "\n";
   context.out << fmt::format("results in {}\n", one_line(dir.folder().string(), std::string::npos)) << std::flush;
   say_lost(lost, context);
   if (complete) return lost.empty() ? kExitDone : kExitWrongInput;

@@ -18,8 +18,8 @@ CLI::Validator not_empty(const char* why) {
 void ToolOptions::add_to(CLI::App& command, std::span<const ToolRow> rows) {
   for (const ToolRow& row : rows)
     for (const ToolOption& o : row.options) {
-      CLI::Option* const option =
-          *o.type ? command.add_option(o.name, o.help)->type_name(o.type)->expected(1) : command.add_flag(o.name, o.help);
+      CLI::Option* const option = *o.type ? command.add_option(o.name, o.help)->type_name(o.type)->expected(1)
+                                          : command.add_flag(o.name, o.help);
       if (*o.missing) option->check(not_empty(o.missing));
       if (!o.allowed.empty()) option->check(CLI::IsMember(o.allowed));
       if (o.most) option->check(CLI::Range(o.least, o.most));

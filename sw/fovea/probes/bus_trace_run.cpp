@@ -80,7 +80,8 @@ ToolRow bus_trace_tool() {
                        "a file name is needed"}},
           .make = [](const ToolValues& v, const ToolParts& parts) -> std::unique_ptr<Tool> {
             if (parts.whole_run)
-              throw UserError("--bus-trace records the window of displayed frames; allowed: with frames in 'run.until'");
+              throw UserError(
+                  "--bus-trace records the window of displayed frames; allowed: with frames in 'run.until'");
             return std::make_unique<BusTraceTool>(v.text("--bus-trace"), parts);
           }};
 }

@@ -35,9 +35,10 @@ namespace {
 
 class AroundTool final : public Tool {
  public:
-  AroundTool(Picoseconds at, const ToolParts& parts) : requests_(at, parts.name_of), observing_(parts.observe(requests_)) {}
+  AroundTool(Picoseconds at, const ToolParts& parts)
+      : requests_(at, parts.name_of), observing_(parts.observe(requests_)) {}
   void finish(const cpu::Counts&, ToolOutput& output) override {
-    output.files.push_back({"requests.csv", requests_.csv()});
+    output.files.push_back({"requests.csv", requests_.csv(), true});
   }
 
  private:
@@ -54,8 +55,8 @@ ToolRow around_tool() {
           .needs = ToolNeeds::kMemory,
           .lacks = "there is no SDRAM",
           .options = {{"--around", "TIME",
-                       "List all requests to the SDRAM within 2 us of this time (\"80.153412ms\", as slowest.csv has it) "
-                       "in requests.csv",
+                       "List all requests to the SDRAM within 2 us of this time (\"80.153412ms\", as slowest.csv has "
+                       "it) in requests.csv",
                        "a time is needed"}},
           .make = [](const ToolValues& v, const ToolParts& parts) -> std::unique_ptr<Tool> {
             return std::make_unique<AroundTool>(time_of(v), parts);
