@@ -212,9 +212,8 @@ void warn_of_fast_memory(const ParamSet& params, const Experiment& experiment) {
   for (const auto* p : params.all())
     if (experiment.rank(p->key()) >= 0 && p->key() != "ddr.part" &&
         (p->key().starts_with("bus.") || p->key().starts_with("ddr.")))
-      Diagnostics::instance().configuration(fmt::format(
-          "'{}' is set but has no effect with --fast-memory, which has no bus and no SDRAM",
-          p->key()));
+      DiagnosticsRef::current().configuration(
+          fmt::format("'{}' is set but has no effect with --fast-memory, which has no bus and no SDRAM", p->key()));
 }
 
 /// What is said after a program has ended.
@@ -233,7 +232,7 @@ void write_program_results(const ExecOptions& o, const ExecResult& result, const
   if (!o.registers.pattern.empty()) dir.write("registers.log", result.registers);
   dir.write("host.json", host_json(result.host, args, version_text()));
   dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
-                                     collect_warnings(Diagnostics::instance())));
+                                     collect_warnings(DiagnosticsRef::current())));
   say_note(dir.commit(result.complete && result.guest_failure.empty()), context);
 }
 

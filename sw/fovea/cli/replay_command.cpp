@@ -210,9 +210,10 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
   LostOutputs lost;
   if (commands) side_output("the command trace", lost, [&] { commands->finish(); });
   if (!options.sets.empty() && path.waited_in_ram())
-    Diagnostics::instance().configuration(fmt::format(
+    DiagnosticsRef::current().configuration(fmt::format(
         "bursts of the EDMA waited {} core clocks in internal RAM for the core: as in the recorded run, which a run "
-        "with these settings need not do; its figures may differ (replay.ram_waits)", path.waited_in_ram()));
+        "with these settings need not do; its figures may differ (replay.ram_waits)",
+        path.waited_in_ram()));
   const double wall = std::chrono::duration<double>(Wall::now() - started).count();
 
   std::vector<StatRow> stats = path.stats();
@@ -224,7 +225,7 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
       peak_rss()};
   dir.write("config.json", config_json(set, experiment, provenance.get()));
   dir.write("host.json", host_json(host, args, version_text()));
-  dir.write("stats.json", stats_json(stats, complete, collect_warnings(Diagnostics::instance(), true)));
+  dir.write("stats.json", stats_json(stats, complete, collect_warnings(DiagnosticsRef::current(), true)));
   dir.write("timeline.csv", timeline_csv(path.labels(), path.timeline()));
   dir.write("latency.csv", latency_csv(path.latency_rows()));
   const std::vector<SlowestRow> slowest = path.slowest_rows();

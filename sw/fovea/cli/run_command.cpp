@@ -70,7 +70,7 @@ void write_results(RunDir& dir, const RunResult& result, const ProgressMeter& me
   dir.write("host.json", host_json(host, args, version_text()));
   // Written last: if stats.json exists, all other files do.
   dir.write("stats.json", stats_json(result.stats, result.complete && result.guest_failure.empty(),
-                                     collect_warnings(Diagnostics::instance()), {result.ended_by, result.kernel}));
+                                     collect_warnings(DiagnosticsRef::current()), {result.ended_by, result.kernel}));
 }
 
 /// Adds the keys that only `fovea replay` has, so that an error message can say so.
