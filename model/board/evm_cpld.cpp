@@ -18,12 +18,10 @@ CpldRegs::CpldRegs(std::uint32_t switch_value)
 EvmCpld::EvmCpld(sc_core::sc_module_name name, const DevicesParams& params)
     : WithRegs(static_cast<std::uint32_t>(params.cpld_switch())), BusTarget(name, regs) {
   regs.mux.on_write([this](std::uint32_t) {
-    if (regs.video.get() != kTvp5146)
-      Diagnostics::instance().not_modelled("CPLD MUX: a video input other than the TVP5146 (5)");
+    if (regs.video.get() != kTvp5146) diagnostics().not_modelled("CPLD MUX: a video input other than the TVP5146 (5)");
   });
   regs.resets.on_write([this](std::uint32_t) {
-    if (regs.reset_tvp5146)
-      Diagnostics::instance().not_modelled("CPLD RESETS: the video decoder held in reset");
+    if (regs.reset_tvp5146) diagnostics().not_modelled("CPLD RESETS: the video decoder held in reset");
   });
 }
 

@@ -137,12 +137,12 @@ bool ConfigBus::access_word(const UnderWay& next, unsigned bytes) {
 [[gnu::noinline]] void ConfigBus::bus_error(std::uint32_t address) {
   ++stats.errors;
   if (const std::string what = describe ? describe(address) : ""; !what.empty()) {
-    Diagnostics::instance().not_modelled("bus error: " + what);
+    diagnostics().not_modelled("bus error: " + what);
     return;
   }
   char text[64];
   std::snprintf(text, sizeof text, "bus error at 0x%08x", address);
-  Diagnostics::instance().guest(text);
+  diagnostics().guest(text);
 }
 
 unsigned ConfigBus::transport_dbg(MemRequest& r) {

@@ -2,9 +2,9 @@
 
 namespace fovea::bus {
 
-Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const mem::DdrParams& ddr,
-         const AddressMap& map, bool strict)
-    : sc_module(name), strict_(strict), memory_(params, ddr, map, *this) {
+Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const mem::DdrParams& ddr, const AddressMap& map,
+         bool strict)
+    : sc_module(name), strict_(strict), memory_(params, ddr, map, *this, diagnostics()) {
   SC_HAS_PROCESS(Scr);
   for (const MasterInfo& m : kMasters.rows) {
     const std::size_t i = index(m.id);

@@ -67,6 +67,8 @@ class Block {
   /// A sentence about the first difference between two models of this block that are compared while both run. Empty:
   /// there is none, or one model only. The block pauses the kernel when it finds one.
   virtual std::string difference() const { return {}; }
+  /// Where the block says its warnings: what was current when it was constructed.
+  const DiagnosticsRef& diagnostics() const { return diagnostics_; }
 
  protected:
   /// The group is reset when the measured window opens and reported when it closes.
@@ -95,6 +97,7 @@ class Block {
   std::vector<ClockIn*> clocks_;
   std::vector<PowerGateIn*> power_gates_;
   std::vector<Interrupt> interrupts_;
+  DiagnosticsRef diagnostics_ = DiagnosticsRef::current();
 };
 
 /// The blocks of a chip or a board, each under the name by which tools show it.

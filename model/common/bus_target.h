@@ -69,8 +69,8 @@ class BusTarget : public sc_core::sc_module, public Block {
     Reg* const r = bank_.register_at(offset);
     std::uint32_t word = 0;
     if (!clocked()) {
-      Diagnostics::instance().guest("access to " + bank_.name() + " while its clock is gated" +
-                                    (gate_.empty() ? "" : " (" + gate_ + ")"));
+      diagnostics().guest("access to " + bank_.name() + " while its clock is gated" +
+                          (gate_.empty() ? "" : " (" + gate_ + ")"));
       if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
       std::memcpy(&word, gp.get_data_ptr(), bytes <= 4 ? bytes : 4);
       if (!observers_.empty()) [[unlikely]]
@@ -99,7 +99,7 @@ class BusTarget : public sc_core::sc_module, public Block {
       if (!hole_accessed(offset)) {
         char where[16];
         std::snprintf(where, sizeof where, "0x%x", offset);
-        Diagnostics::instance().not_modelled(bank_.name() + " register at offset " + where);
+        diagnostics().not_modelled(bank_.name() + " register at offset " + where);
       }
       if (gp.is_read()) std::memset(gp.get_data_ptr(), 0, bytes);
       a = Access::kOk;
@@ -116,15 +116,13 @@ class BusTarget : public sc_core::sc_module, public Block {
   [[gnu::noinline]] void reserved_written(const Reg& r) const {
     char bits[16];
     std::snprintf(bits, sizeof bits, "0x%08x", r.reserved());
-    Diagnostics::instance().guest("1 written to reserved bits of " + bank_.name() + " " + r.name() +
-                                  " (" + bits + ")");
+    diagnostics().guest("1 written to reserved bits of " + bank_.name() + " " + r.name() + " (" + bits + ")");
   }
 
   [[gnu::noinline]] void warn_not_modelled(const Reg& r, std::uint32_t offset,
                                            unsigned bytes) const {
     const std::uint32_t lanes = (bytes == 4 ? ~0u : (1u << 8 * bytes) - 1u) << 8 * (offset & 3u);
-    for (const std::string& what : r.not_modelled(lanes))
-      Diagnostics::instance().not_modelled(bank_.name() + " " + what);
+    for (const std::string& what : r.not_modelled(lanes)) diagnostics().not_modelled(bank_.name() + " " + what);
   }
 
   unsigned transport_dbg(tlm::tlm_generic_payload& gp) {

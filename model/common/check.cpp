@@ -2,8 +2,14 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 namespace fovea {
+namespace {
+
+thread_local Diagnostics* current = nullptr;
+
+}  // namespace
 
 void check_failed(const char* expression, const char* file, int line, const std::string& what) {
   std::fprintf(stderr, "fovea: own defect: %s (%s) at %s:%d\n", what.c_str(), expression, file,
@@ -12,11 +18,6 @@ void check_failed(const char* expression, const char* file, int line, const std:
   // quick_exit runs no destructors, which could fail on the inconsistent state. Status 4 is
   // documented.
   std::quick_exit(4);
-}
-
-Diagnostics& Diagnostics::instance() {
-  static Diagnostics d;
-  return d;
 }
 
 void Diagnostics::not_modelled(const std::string& what) {
@@ -38,11 +39,21 @@ void Diagnostics::note(Kind kind, const std::string& what) {
   if (show == Show::kNoMore) sink_(kind, "warnings of further kinds are only counted");
 }
 
-std::map<std::pair<Diagnostics::Kind, std::string>, std::uint64_t> Diagnostics::counts() const {
-  std::map<std::pair<Kind, std::string>, std::uint64_t> counts;
+Diagnostics::Counts Diagnostics::counts() const {
+  Counts counts;
   for (const auto& line : counts_.list())
     counts[{static_cast<Kind>(line.group), line.text}] += line.count;
   return counts;
+}
+
+DiagnosticsRef DiagnosticsRef::current() { return fovea::current ? DiagnosticsRef(*fovea::current) : DiagnosticsRef(); }
+
+DiagnosticsScope::DiagnosticsScope(Diagnostics& diagnostics)
+    : own_(&diagnostics), outer_(std::exchange(current, &diagnostics)) {}
+
+DiagnosticsScope::~DiagnosticsScope() {
+  FOVEA_CHECK(current == own_, "the scopes of diagnostics end out of their order");
+  current = outer_;
 }
 
 }  // namespace fovea

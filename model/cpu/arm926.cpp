@@ -4,9 +4,8 @@
 
 namespace fovea::cpu {
 
-Arm926::Arm926(sc_core::sc_module_name name, const CpuParams& params,
-               std::span<std::uint8_t> tcm, std::uint32_t entry)
-    : LookaheadInitiator(name, 2), core_(params, *this, tcm), entry_(entry) {
+Arm926::Arm926(sc_core::sc_module_name name, const CpuParams& params, std::span<std::uint8_t> tcm, std::uint32_t entry)
+    : LookaheadInitiator(name, 2), core_(params, *this, tcm, diagnostics()), entry_(entry) {
   add_master(Master::kArmI, *sockets[kInstructionPort], 1);
   add_master(Master::kArmD, *sockets[kDataPort], 1);
   add_own_window(core_.window_stats());

@@ -4,9 +4,6 @@
 #include <utility>
 
 namespace fovea::dma {
-namespace {
-void tell(const std::string& what) { Diagnostics::instance().guest("EDMA: " + what); }
-}  // namespace
 
 EdmaCc::EdmaCc(sc_core::sc_module_name name, const EdmaParams& params)
     : WithRegs(static_cast<unsigned>(params.reset_priority())),
@@ -41,7 +38,7 @@ void EdmaCc::update_priorities() {
   for (unsigned q = 0; q < kQueues; ++q) {
     const std::uint32_t tc = regs.quetcmap.queue[q]->get();
     if (tc >= kTransferControllers) {
-      Diagnostics::instance().guest("QUETCMAP names a transfer controller that is not there");
+      diagnostics().guest("QUETCMAP names a transfer controller that is not there");
       continue;
     }
     level[tc] = std::min(level[tc], regs.quepri.queue[q]->get());
@@ -150,7 +147,8 @@ bool EdmaCc::can_submit(unsigned controller) const {
   const TransferPort* const port = controllers_[controller];
   if (port && !port->has_clock() && !(waits_for_clock_ >> controller & 1)) {
     waits_for_clock_ |= 1u << controller;
-    tell("a request waits for transfer controller " + std::to_string(controller) + ", which has no clock");
+    diagnostics().guest("EDMA: a request waits for transfer controller " + std::to_string(controller) +
+                        ", which has no clock");
   }
   return port && port->program_free() < kernel_time();
 }
@@ -200,6 +198,6 @@ void EdmaCc::events_enabled(std::uint64_t events) {
   if (on_events_enabled) on_events_enabled(events);
 }
 
-void EdmaCc::warn(const std::string& what) { tell(what); }
+void EdmaCc::warn(const std::string& what) { diagnostics().guest("EDMA: " + what); }
 
 }  // namespace fovea::dma

@@ -82,8 +82,7 @@ EdmaTc::EdmaTc(sc_core::sc_module_name name, unsigned number, const EdmaTcParams
     static constexpr std::array<unsigned, 5> kClocks{1, 4, 8, 16, 32};
     const std::uint32_t rate = regs.rdrate.rate.get();
     if (rate >= kClocks.size()) {
-      Diagnostics::instance().guest("EDMA: RDRATE " + std::to_string(rate) +
-                                    " is reserved; allowed: 0 to 4");
+      diagnostics().guest("EDMA: RDRATE " + std::to_string(rate) + " is reserved; allowed: 0 to 4");
       return;
     }
     core_.set_read_interval(kClocks[rate]);
@@ -124,8 +123,7 @@ void EdmaTc::show_interrupts() {
   });
   const auto warn = [this](std::uint32_t word) {
     if (word & 3u)
-      Diagnostics::instance().guest("the interrupt of " + regs.name() +
-                                    " (INTEN, INTCMD) is not connected on this chip");
+      diagnostics().guest("the interrupt of " + regs.name() + " (INTEN, INTCMD) is not connected on this chip");
   };
   regs.inten.on_write(warn);
   regs.intcmd.on_write(warn);
@@ -148,7 +146,7 @@ bool EdmaTc::hole_accessed(std::uint32_t offset) {
   char text[96];
   std::snprintf(text, sizeof text, "access to a reserved address of %s, offset 0x%x",
                 regs.name().c_str(), offset);
-  Diagnostics::instance().guest(text);
+  diagnostics().guest(text);
   return true;
 }
 
@@ -293,8 +291,7 @@ void EdmaTc::failed(const TransferRequest& request, TransferController::Failure 
   channels_->dropped(request);
   ++stats.errors;
   set_error(regs.errstat.request);
-  Diagnostics::instance().guest(
-      "EDMA: a request with constant addressing whose address or index is no multiple of 32");
+  diagnostics().guest("EDMA: a request with constant addressing whose address or index is no multiple of 32");
 }
 
 /// The details are those of the first error.
@@ -307,8 +304,8 @@ void EdmaTc::report_bus_error(const TransferRequest& request, bool read) {
   }
   ++stats.errors;
   set_error(regs.errstat.bus);
-  Diagnostics::instance().guest(read ? "EDMA: a read that nobody answers (bus error)"
-                                     : "EDMA: a write that nobody answers (bus error)");
+  diagnostics().guest(read ? "EDMA: a read that nobody answers (bus error)"
+                           : "EDMA: a write that nobody answers (bus error)");
 }
 
 /// The interrupt is raised with the first enabled error.

@@ -169,9 +169,8 @@ void RemapEngine::answered(const BurstMaster::Completion& c) {
 void RemapEngine::report_errors() {
   for (; !failures_.empty() && failures_.front().first <= kernel_time(); failures_.pop_front()) {
     ++stats.errors;
-    Diagnostics::instance().guest(failures_.front().second
-                                      ? "remap engine: a write that nobody answers (bus error)"
-                                      : "remap engine: a read that nobody answers (bus error)");
+    diagnostics().guest(failures_.front().second ? "remap engine: a write that nobody answers (bus error)"
+                                                 : "remap engine: a read that nobody answers (bus error)");
   }
   if (!failures_.empty()) failed_.at(failures_.front().first);
 }

@@ -5,7 +5,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "model/common/check.h"
 #include "model/mem/check/command_checker.h"
 #include "model/mem/check/part_checker.h"
 #include "model/mem/check/programming.h"
@@ -91,14 +90,15 @@ struct DdrCheck::Stream {
   DdrController& controller;
   check::CommandChecker programmed;
   const check::Part& part;
+  DiagnosticsRef diagnostics;
   std::optional<check::PartChecker> sheet;
   bool used = false;  // before its first ACT the part holds nothing, however it is programmed
   bool in_reset = false;
   std::map<std::string, std::string> said;  // kind of warning: with the time of its first
   Subscription listening;
 
-  Stream(DdrController& c, const check::Part& of)
-      : controller(c), programmed(rules({})), part(of) {
+  Stream(DdrController& c, const check::Part& of, const DiagnosticsRef& d)
+      : controller(c), programmed(rules({})), part(of), diagnostics(d) {
     begin_sheet();
     programmed.on_complaint = [this](const check::Complaint& complaint) {
       FOVEA_CHECK(false, "SDRAM command against the programmed timing: " + complaint.rule +
@@ -129,7 +129,7 @@ struct DdrCheck::Stream {
         line->second = "SDRAM command bus: " + kind + ", first at " +
                        seconds(controller.ddr_clock().edge(complaint.clock)) + ", bank " +
                        std::to_string(complaint.bank);
-      Diagnostics::instance().guest(line->second);
+      diagnostics.guest(line->second);
     };
   }
 
@@ -141,10 +141,10 @@ struct DdrCheck::Stream {
   }
 };
 
-DdrCheck::DdrCheck(const DdrParams& params, DdrController& controller)
-    : sheet_(new Sheet{part_of(params)}) {
+DdrCheck::DdrCheck(const DdrParams& params, DdrController& controller, const DiagnosticsRef& diagnostics)
+    : diagnostics_(diagnostics), sheet_(new Sheet{part_of(params)}) {
   if (!params.check.is("commands")) return;
-  stream_ = std::make_unique<Stream>(controller, sheet_->part);
+  stream_ = std::make_unique<Stream>(controller, sheet_->part, diagnostics_);
   controller.on_change = [this, &controller](Picoseconds at) {
     expect(controller.config(), controller.ddr_clock().frequency(), at);
   };
@@ -179,7 +179,7 @@ std::vector<std::string> DdrCheck::violations(const DdrConfig& config, Frequency
 }
 
 void DdrCheck::warn(const DdrConfig& config, Frequency clock) const {
-  for (const std::string& line : violations(config, clock)) Diagnostics::instance().guest(line);
+  for (const std::string& line : violations(config, clock)) diagnostics_.guest(line);
 }
 
 }  // namespace fovea::mem

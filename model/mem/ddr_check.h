@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "model/common/check.h"
 #include "model/mem/core/ddr_controller.h"
 
 namespace fovea::mem {
@@ -13,7 +14,7 @@ namespace fovea::mem {
 class DdrCheck {
  public:
   /// @throws UserError for a grade that the part does not come in
-  DdrCheck(const DdrParams& params, DdrController& controller);
+  DdrCheck(const DdrParams& params, DdrController& controller, const DiagnosticsRef& diagnostics);
   ~DdrCheck();
   DdrCheck(const DdrCheck&) = delete;
 
@@ -32,6 +33,7 @@ class DdrCheck {
  private:
   struct Stream;
   struct Sheet;
+  DiagnosticsRef diagnostics_;
   std::unique_ptr<Sheet> sheet_;
   std::unique_ptr<Stream> stream_;  // with ddr.check = commands
 };

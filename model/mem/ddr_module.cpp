@@ -5,12 +5,11 @@
 
 namespace fovea::mem {
 
-DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params,
-                     memsys::MemorySystem& memory)
+DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params, memsys::MemorySystem& memory)
     : BusTarget(name, regs),
       params_(params),
       memory_(memory),
-      check_(params, memory.controller()),
+      check_(params, memory.controller(), diagnostics()),
       sdtimr_(regs.sdtimr.get()),
       sdtimr2_(regs.sdtimr2.get()),
       cl_(regs.sdbcr.cl.get()) {
@@ -65,8 +64,7 @@ void DdrModule::clocks_changed() {
   const Picoseconds now = kernel_time();
   memory_.settle(now);
   if (ready_ && ddr_clk.read().stopped() && !refreshes_itself(controller().asleep()))
-    Diagnostics::instance().guest(
-        "the SDRAM's clock stops outside self-refresh: nothing refreshes it; the model keeps its data");
+    diagnostics().guest("the SDRAM's clock stops outside self-refresh: nothing refreshes it; the model keeps its data");
   controller().set_clocks(ddr_clk.read(), scr_clk.read(), now);
   examined_ = false;
   update_open();
@@ -79,7 +77,7 @@ void DdrModule::keep_while_locked(Reg& timing, std::uint32_t& kept) {
   if (regs.sdbcr.timunlock) {
     kept = timing.get();
   } else if (timing.get() != kept) {
-    Diagnostics::instance().guest(timing.name() + " written without SDBCR TIMUNLOCK: write lost");
+    diagnostics().guest(timing.name() + " written without SDBCR TIMUNLOCK: write lost");
     timing.set(kept);
   }
   reconfigure();
@@ -91,7 +89,7 @@ void DdrModule::keep_latency_while_locked() {
   auto& r = regs.sdbcr;
   const bool unlocks = r.timunlock || r.bootunlock;
   if (r.cl.get() != cl_ && !unlocks && !unlocked_) {
-    Diagnostics::instance().guest("SDBCR CL written without TIMUNLOCK or BOOTUNLOCK: write lost");
+    diagnostics().guest("SDBCR CL written without TIMUNLOCK or BOOTUNLOCK: write lost");
     r.cl.set(cl_);
   }
   cl_ = r.cl.get();
@@ -123,21 +121,20 @@ bool DdrModule::admit(std::uint32_t offset, unsigned bytes) {
   const std::uint64_t end = std::uint64_t{offset} + bytes;
   const bool outside = end > memory_.map().ddr_window;
   if (outside || !ready_ || !enabled_ || !controller().running()) {
-    Diagnostics::instance().guest(outside ? "access beyond the SDRAM's 256 MiB of the memory map"
-                                          : "access to the SDRAM before its controller runs");
+    diagnostics().guest(outside ? "access beyond the SDRAM's 256 MiB of the memory map"
+                                : "access to the SDRAM before its controller runs");
     return false;
   }
   if (!examined_) {
     examined_ = true;
     update_open();
     check_.begin();
-    for (const std::string& line : invalid_register_values(regs, params_)) Diagnostics::instance().guest(line);
+    for (const std::string& line : invalid_register_values(regs, params_)) diagnostics().guest(line);
     check_.warn(programmed(), ddr_clk.read());
   }
   if (end > store().size())
-    Diagnostics::instance().guest("access beyond the SDRAM's end (ddr.part, " +
-                                  std::to_string(store().size() >> 20) +
-                                  " MiB): it repeats from its beginning");
+    diagnostics().guest("access beyond the SDRAM's end (ddr.part, " + std::to_string(store().size() >> 20) +
+                        " MiB): it repeats from its beginning");
   return true;
 }
 

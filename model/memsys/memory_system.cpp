@@ -3,20 +3,15 @@
 #include <algorithm>
 #include <utility>
 
-#include "model/common/check.h"
 #include "model/mem/core/ddr_plan.h"
 
 namespace fovea::memsys {
 
 using bus::Slave;
 
-MemorySystem::MemorySystem(const bus::CrossbarParams& crossbar, const mem::DdrParams& ddr,
-                           const AddressMap& map, MemoryHost& host, Route route)
-    : map_(map),
-      host_(host),
-      store_(ddr.size_bytes()),
-      crossbar_(crossbar),
-      controller_(ddr, store_) {
+MemorySystem::MemorySystem(const bus::CrossbarParams& crossbar, const mem::DdrParams& ddr, const AddressMap& map,
+                           MemoryHost& host, const DiagnosticsRef& diagnostics, Route route)
+    : map_(map), host_(host), store_(ddr.size_bytes()), crossbar_(crossbar), controller_(ddr, store_, diagnostics) {
   crossbar_.set_teller(*this);
   if (route != Route::kBypass) return;
   bypass_.emplace(crossbar.timeline_interval());

@@ -8,6 +8,7 @@
 
 #include "model/bus/core/crossbar.h"
 #include "model/common/arrival_observer.h"
+#include "model/common/check.h"
 #include "model/common/masters.h"
 #include "model/common/mem_request.h"
 #include "model/common/observers.h"
@@ -39,8 +40,9 @@ enum class Route {
 /// them when a user advances it to a time before which that user knows all requests.
 class MemorySystem final : private SlowRequestTeller {
  public:
-  MemorySystem(const bus::CrossbarParams& crossbar, const mem::DdrParams& ddr, const AddressMap& map,
-               MemoryHost& host, Route route = Route::kCrossbar);
+  /// @param diagnostics who hears of its warnings; two memory systems share them only if both are handed the same
+  MemorySystem(const bus::CrossbarParams& crossbar, const mem::DdrParams& ddr, const AddressMap& map, MemoryHost& host,
+               const DiagnosticsRef& diagnostics, Route route = Route::kCrossbar);
   MemorySystem(const MemorySystem&) = delete;
   MemorySystem& operator=(const MemorySystem&) = delete;
 

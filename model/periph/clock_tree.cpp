@@ -14,7 +14,7 @@ Frequency ClockTree::venc() const {
   if (!(ctrl >> 3 & 1)) return {};
   switch (ctrl & 3) {
     case 2:
-      Diagnostics::instance().not_modelled("VPSS_CLK_CTRL: EXTCLK as VENC clock");
+      diagnostics_.not_modelled("VPSS_CLK_CTRL: EXTCLK as VENC clock");
       return {};
     case 3:
       return pclk.size() ? pclk->read() : Frequency{};

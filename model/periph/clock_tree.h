@@ -44,6 +44,7 @@ class ClockTree : public sc_core::sc_module {
   Frequency venc() const;
   Frequency crossbar() const;
   Frequency crossbar_;
+  DiagnosticsRef diagnostics_ = DiagnosticsRef::current();
 };
 
 }  // namespace fovea::periph

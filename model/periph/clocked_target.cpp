@@ -22,9 +22,8 @@ Picoseconds ClockedTarget::time_of(std::uint64_t tick) const {
 void ClockedTarget::check_pins(const OptionalIn<bool>& pins, const char* selection) {
   if (pins_checked_ || pins.size() == 0 || pins->read()) return;
   pins_checked_ = true;
-  Diagnostics::instance().guest(std::string(basename()) +
-                                " is used, but PINMUX does not give it its pins (" + selection +
-                                "): on the chip nothing would reach them");
+  diagnostics().guest(std::string(basename()) + " is used, but PINMUX does not give it its pins (" + selection +
+                      "): on the chip nothing would reach them");
 }
 
 void ClockedTarget::take_clock() {

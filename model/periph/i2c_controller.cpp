@@ -53,8 +53,9 @@ I2cController::I2cController(sc_core::sc_module_name name)
   regs.icmdr.on_write([this](std::uint32_t) { mode_written(); });
   regs.icpsc.on_write([this](std::uint32_t) {
     if (running_ && (regs.icpsc.get() & 0xFF) != prescaler_)
-      Diagnostics::instance().guest("I2C.ICPSC is written while ICMDR.IRS is 1: the prescaler is taken when IRS goes "
-                                    "from 0 to 1");
+      diagnostics().guest(
+          "I2C.ICPSC is written while ICMDR.IRS is 1: the prescaler is taken when IRS goes "
+          "from 0 to 1");
   });
   SC_METHOD(update);
   sensitive << wake_.event();
@@ -105,8 +106,7 @@ void I2cController::mode_written() {
     return;
   }
   if (!std::exchange(running_, true)) prescaler_ = regs.icpsc.get() & 0xFF;
-  if (m.xa || m.fdf || m.stb || m.dlb || m.bc)
-    Diagnostics::instance().not_modelled("I2C mode bits XA, FDF, STB, DLB or BC");
+  if (m.xa || m.fdf || m.stb || m.dlb || m.bc) diagnostics().not_modelled("I2C mode bits XA, FDF, STB, DLB or BC");
   const bool free = state_ == State::kIdle || state_ == State::kHeld;
   if (m.mst && m.stt && free)
     start();

@@ -21,9 +21,8 @@ void InterruptMux::select() {
   for (std::size_t i = 0; i < kInterruptChoices.size(); ++i) {
     const InterruptChoice& c = kInterruptChoices[i];
     if ((arm_intmux.read() >> c.bit & 1) && second[i].size() == 0)
-      Diagnostics::instance().not_modelled("ARM_INTMUX bit " + std::to_string(c.bit) +
-                                           " gives interrupt " + std::to_string(c.interrupt) +
-                                           " to " + c.second + ", which is silent here");
+      diagnostics_.not_modelled("ARM_INTMUX bit " + std::to_string(c.bit) + " gives interrupt " +
+                                std::to_string(c.interrupt) + " to " + c.second + ", which is silent here");
   }
 }
 

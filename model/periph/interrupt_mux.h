@@ -52,6 +52,7 @@ class InterruptMux : public sc_core::sc_module {
  private:
   void select();
   void update();
+  DiagnosticsRef diagnostics_ = DiagnosticsRef::current();
 };
 
 }  // namespace fovea::periph

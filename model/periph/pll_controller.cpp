@@ -79,15 +79,14 @@ void PllController::control_written() {
     relock();
   }
   if (regs.pllctl.pllen && !regs.pllctl.pllensrc && !locked_)
-    Diagnostics::instance().guest(regs.name() + ": PLLEN set before the PLL has locked");
+    diagnostics().guest(regs.name() + ": PLLEN set before the PLL has locked");
   wake_.soon();
 }
 
 void PllController::relock() {
   locked_ = false;
   if (regs.pllctl.pllen && !regs.pllctl.pllensrc && pllm_)
-    Diagnostics::instance().guest(regs.name() +
-                                  ": multiplier or pre-divider changed while PLLEN = 1");
+    diagnostics().guest(regs.name() + ": multiplier or pre-divider changed while PLLEN = 1");
   lock_at_ = pll_on_ ? kernel_time() + lock_time_ : kNever;
   wake_.soon();
 }

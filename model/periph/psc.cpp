@@ -52,7 +52,7 @@ void Psc::on_reset(ResetKind) {
 void Psc::command(std::uint32_t domains) {
   if (!(domains & 1)) return;
   if (done_at_ != kNever) {
-    Diagnostics::instance().guest("PSC: PTCMD while domain 0 is in transition");
+    diagnostics().guest("PSC: PTCMD while domain 0 is in transition");
     again_ = true;
     return;
   }

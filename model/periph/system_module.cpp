@@ -21,8 +21,8 @@ SystemModule::SystemModule(sc_core::sc_module_name name, const SystemParams& par
                                             &regs.arm_intmux})
     r->on_write([this](std::uint32_t) { written_.soon(); });
   regs.pinmux[3].on_write([this](std::uint32_t) { written_.soon(); });
-  regs.deepsleep.on_write([](std::uint32_t word) {
-    if (word >> 31) Diagnostics::instance().not_modelled("deep sleep");
+  regs.deepsleep.on_write([this](std::uint32_t word) {
+    if (word >> 31) diagnostics().not_modelled("deep sleep");
   });
   regs.vtpiocr.on_write([this](std::uint32_t) {
     const bool clrz = regs.vtpiocr.clrz.get();

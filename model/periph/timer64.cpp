@@ -27,7 +27,7 @@ Timer64::Timer64(sc_core::sc_module_name name) : ClockedTarget(name, regs) {
   lockable(regs.prd12, [this] { load_periods(); });
   lockable(regs.prd34, [this] { load_periods(); });
   lockable(regs.tcr, [this] {
-    if (regs.tcr.clksrc12) Diagnostics::instance().not_modelled("TIMER64 clock from the pin");
+    if (regs.tcr.clksrc12) diagnostics().not_modelled("TIMER64 clock from the pin");
     reconfigure();
   });
   lockable(regs.tgcr, [this] { reconfigure(); });
@@ -49,9 +49,9 @@ void Timer64::lockable(Reg& reg, std::function<void()> written) {
     Lockable& l = lockable_[n];
     if (!locked()) return written();
     l.reg->set(l.value);
-    Diagnostics::instance().guest("TIMER64." + l.reg->name() +
-                                  " is written while the watchdog is armed, and keeps its value; allowed: the keys in "
-                                  "WDTCR");
+    diagnostics().guest("TIMER64." + l.reg->name() +
+                        " is written while the watchdog is armed, and keeps its value; allowed: the keys in "
+                        "WDTCR");
   });
 }
 

@@ -99,7 +99,7 @@ std::uint64_t Uart16550::character_ticks() const {
 
 void Uart16550::data_written(std::uint8_t byte) {
   if (tx_.size() >= capacity()) {
-    Diagnostics::instance().guest("UART transmit overrun: THR written while full");
+    diagnostics().guest("UART transmit overrun: THR written while full");
     tx_.pop_back();  // the byte in the holding register is overwritten
   }
   tx_.push_back(byte);

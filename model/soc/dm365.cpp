@@ -268,9 +268,8 @@ void Dm365::edma_event(unsigned channel) {
 void Dm365::edma_events_selected() {
   for (const EdmaEvent& e : kEdmaEvents)
     if (e.has_choice() && edma_evtmux_.read() >> e.bit & 1)
-      Diagnostics::instance().not_modelled("EDMA_EVTMUX bit " + std::to_string(e.bit) +
-                                           " gives EDMA event " + std::to_string(e.channel) + " to " +
-                                           std::string(e.second) + ", which is silent here");
+      diagnostics().not_modelled("EDMA_EVTMUX bit " + std::to_string(e.bit) + " gives EDMA event " +
+                                 std::to_string(e.channel) + " to " + std::string(e.second) + ", which is silent here");
 }
 
 /// An event whose source is not modelled never comes.
@@ -278,8 +277,8 @@ void Dm365::edma_events_enabled(std::uint64_t events) {
   for (const EdmaEvent& e : kEdmaEvents) {
     const bool second = e.has_choice() && edma_evtmux_.read() >> e.bit & 1;
     if (!(events >> e.channel & 1) || (e.wire != EdmaEvent::Wire::kNone && !second)) continue;
-    Diagnostics::instance().not_modelled("EESR enables EDMA event " + std::to_string(e.channel) + " of " +
-                                         std::string(second ? e.second : e.first) + ", which is silent here");
+    diagnostics().not_modelled("EESR enables EDMA event " + std::to_string(e.channel) + " of " +
+                               std::string(second ? e.second : e.first) + ", which is silent here");
   }
 }
 

@@ -240,7 +240,7 @@ PlatformText platform_text(const Placements& rows) {
   for (const Placement& row : rows) row.declare(params);
   const bus::CrossbarParams crossbar;
   NoHost host;
-  memsys::MemorySystem memory(crossbar, params.get<mem::DdrParams>(), {}, host);
+  memsys::MemorySystem memory(crossbar, params.get<mem::DdrParams>(), {}, host, {});
   const PlacedBlocks placed(rows, params, memory);
   std::string block_rows;
   for (std::size_t i = 0; i < placed.size(); ++i) {

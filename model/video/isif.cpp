@@ -36,7 +36,7 @@ void Isif::write_syncen() {
     setup_.write = false;
     return;
   }
-  Diagnostics& d = Diagnostics::instance();
+  const DiagnosticsRef& d = diagnostics();
   if (!regs.rec656if.r656on) d.not_modelled("ISIF without BT.656 embedded syncs");
   if (regs.modeset.inpmod.get() != 2) d.not_modelled("ISIF input other than 8-bit YC");
   if (regs.ccdcfg.sdrpack.get() != 2) d.not_modelled("ISIF packing other than 8 bit");
@@ -74,7 +74,7 @@ void Isif::latch(const Standard& standard) {
   setup_.bytes = regs.lnh.value.get() + 1;
   const unsigned active = standard.active_bytes();
   if (setup_.sph >= active || setup_.sph + setup_.bytes > active) {
-    Diagnostics::instance().guest("ISIF window leaves the active part of the line; cut");
+    diagnostics().guest("ISIF window leaves the active part of the line; cut");
     setup_.sph = std::min(setup_.sph, active);
     setup_.bytes = std::min(setup_.bytes, active - setup_.sph);
   }
@@ -243,8 +243,7 @@ void Isif::close_fields() {
 /// Called ahead of time c.last: must not use or change anything that others can observe before
 /// then.
 void Isif::done(const BurstMaster::Completion& c) {
-  if (c.error && c.tag > reset_tag_)
-    Diagnostics::instance().guest("capture writes to an address without memory");
+  if (c.error && c.tag > reset_tag_) diagnostics().guest("capture writes to an address without memory");
   done_tag_ = c.tag;
   done_at_ = c.last;
   for (FieldEnd& e : ends_)

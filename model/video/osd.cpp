@@ -30,8 +30,7 @@ Osd::Osd(sc_core::sc_module_name name, const VpssParams& params)
   lines.bind(*this);
   for (Line& l : ring_) l.bursts.reserve(kActiveBytes / 32 + 8);
   regs.miscctl.on_write([this](std::uint32_t value) {
-    if (value >> 6 & 1u && params_.miscctl_6.is("rgbwin"))
-      Diagnostics::instance().not_modelled("OSD MISCCTL.RGBWIN");
+    if (value >> 6 & 1u && params_.miscctl_6.is("rgbwin")) diagnostics().not_modelled("OSD MISCCTL.RGBWIN");
   });
   memory.on_done = [this](const BurstMaster::Completion& c) { done(c); };
 }
@@ -56,7 +55,7 @@ void Osd::field_start(const Standard& standard, bool f) {
           static_cast<int>(is_625 ? params_.base_py_625() : params_.base_py_525());
     w.width = value(regs.vidwin0xl);
     w.height = value(regs.vidwin0yl);
-    Diagnostics& d = Diagnostics::instance();
+    const DiagnosticsRef& d = diagnostics();
     if (w.on) {
       if (regs.vidwinmd.vvz0 || regs.vidwinmd.vhz0) d.not_modelled("OSD zoom");
       if (!(regs.vidwin0ofst.ah.get() & 8)) d.guest("VIDWIN0OFST bit 12 must be 1");
@@ -138,8 +137,7 @@ void Osd::issue() {
 /// then.
 void Osd::done(const BurstMaster::Completion& c) {
   const std::uint64_t n = c.tag >> kBurstIndexBits;
-  if (c.error && n >= reset_line_)
-    Diagnostics::instance().guest("display reads an address without memory");
+  if (c.error && n >= reset_line_) diagnostics().guest("display reads an address without memory");
   if (n >= finished_ && n < fetched_) {  // otherwise the line was displayed already
     Line& line = at(n);
     Burst& b = line.bursts[c.tag & ((1u << kBurstIndexBits) - 1)];

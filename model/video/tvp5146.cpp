@@ -17,10 +17,6 @@ constexpr std::uint8_t kFormatter2Enables = 0x11;  // enables the data and clock
 // Bits 3 and 2 of the same register.
 constexpr unsigned kBlackScreenOff = 0, kBlackScreenUnlocked = 1;
 
-void warn(std::uint8_t index, std::uint8_t value) {
-  for (const std::string& what : decoder_not_modelled(index, value)) Diagnostics::instance().not_modelled(what);
-}
-
 }  // namespace
 
 Tvp5146::Tvp5146(sc_core::sc_module_name name, const Tvp5146Params& params,
@@ -297,6 +293,10 @@ void Tvp5146::relock(bool other_syncs) {
   // A later change of the clock would move the start of a field that is over.
   if (signal_ && started_ && (other_syncs || params_.relock_fields() > 0))
     synced_at_ = std::max(kernel_time(), field_time(locked_from_));
+}
+
+void Tvp5146::warn(std::uint8_t index, std::uint8_t value) const {
+  for (const std::string& what : decoder_not_modelled(index, value)) diagnostics_.not_modelled(what);
 }
 
 void Tvp5146::write_register(std::uint8_t index, std::uint8_t value) {

@@ -5,6 +5,7 @@
 #include <systemc>
 #include <vector>
 
+#include "model/common/check.h"
 #include "model/common/sc_ports.h"
 #include "model/common/timer.h"
 #include "model/video/camera_signal.h"
@@ -94,6 +95,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   std::uint64_t present_field() const;
   void write_register(std::uint8_t index, std::uint8_t value);
   std::uint8_t read_register(std::uint8_t index) const;
+  void warn(std::uint8_t index, std::uint8_t value) const;
   void relock(bool other_syncs = false);
   bool in_step(std::size_t camera, std::size_t other) const;
   void count_line();
@@ -113,6 +115,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   }
 
   const Tvp5146Params& params_;
+  DiagnosticsRef diagnostics_ = DiagnosticsRef::current();
   std::vector<CameraSignal> cameras_;
   std::size_t raster_ = 0;   // the camera whose raster is sent
   bool signal_ = false;      // there is a camera on the selected input; its raster is sent

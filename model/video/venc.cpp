@@ -45,10 +45,9 @@ void Venc::reconsider() {
   }
   if (regs.vmod.venc && (regs.vmod.vmd || regs.vmod.slave || regs.vmod.hdmd || regs.vmod.nsit ||
                          regs.vmod.tvtyp.get() > 1))
-    Diagnostics::instance().not_modelled("VENC mode other than standard 525/60 or 625/50");
+    diagnostics().not_modelled("VENC mode other than standard 525/60 or 625/50");
   if (regs.vmod.venc && !regs.vmod.vie)
-    Diagnostics::instance().not_modelled(
-        "VENC VMOD.VIE = 0: the analogue output shows the picture");
+    diagnostics().not_modelled("VENC VMOD.VIE = 0: the analogue output shows the picture");
   const bool on = wanted();
   if (standard_ && (!on || standard_ != &chosen())) stop_raster();
   if (on && !standard_) {

@@ -46,9 +46,8 @@ void VpssTop::events_selected() {
   for (unsigned k = 0; k < kEvents; ++k) {
     const std::uint32_t source = regs.evtsel.fields()[k]->get();
     if (source < isif_int.size() || source == kVencSource || source == kNoSource) continue;
-    Diagnostics::instance().not_modelled("VPSS EVTSEL gives VPSS_EVT" + std::to_string(k + 1) +
-                                         " to source " + std::to_string(source) +
-                                         ", which is silent here");
+    diagnostics().not_modelled("VPSS EVTSEL gives VPSS_EVT" + std::to_string(k + 1) + " to source " +
+                               std::to_string(source) + ", which is silent here");
   }
   selection_.soon();
 }

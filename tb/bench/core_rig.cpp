@@ -21,7 +21,7 @@ Picoseconds QuietPort::wait_for_interrupt(Picoseconds) {
   throw std::runtime_error("the program sleeps, and there is no interrupt");
 }
 
-CoreRig::CoreRig(const std::string& elf, std::uint64_t clocks) : core(params, port, tcm) {
+CoreRig::CoreRig(const std::string& elf, std::uint64_t clocks) : core(params, port, tcm, {}) {
   std::ifstream file(elf, std::ios::binary);
   if (!file) throw std::runtime_error("the file cannot be read");
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};

@@ -13,7 +13,7 @@ namespace {
 void controller(benchmark::State& state, bool write, unsigned bytes) {
   mem::DdrParams params;
   mem::BackingStore store(params.size_bytes());
-  mem::DdrController ddr(params, store);
+  mem::DdrController ddr(params, store, {});
   ddr.set_clocks(Frequency(243'000'000), Frequency(121'500'000), 0);
   std::array<std::uint8_t, 64> data{};
   MemRequest r;
@@ -65,7 +65,7 @@ void saturated(benchmark::State& state) {
   mem::DdrParams params;
   mem::BackingStore store(params.size_bytes());
   bool open = true;
-  mem::DdrController ddr(params, store);
+  mem::DdrController ddr(params, store, {});
   ddr.set_clocks(Frequency(243'000'000), Frequency(121'500'000), 0);
   std::array<std::uint8_t, 64> data{};
   std::array<MemRequest, 32> requests;  // more than the controller holds

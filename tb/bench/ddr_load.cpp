@@ -16,7 +16,7 @@ namespace {
 
 class Load {
  public:
-  Load() : store_(params_.size_bytes()), ddr_(params_, store_) {
+  Load() : store_(params_.size_bytes()), ddr_(params_, store_, {}) {
     ddr_.set_clocks(Frequency(243'000'000), Frequency(121'500'000), 0);
   }
 

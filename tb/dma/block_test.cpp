@@ -18,6 +18,7 @@
 
 #include "model/dma/edma_cc.h"
 #include "model/dma/edma_tc.h"
+#include "tb/own_diagnostics.h"
 #include "tb/sync/in_child.h"
 #include "tb/sync/memory_system.h"
 
@@ -114,6 +115,7 @@ struct Rig {
     return gp.is_response_ok() ? word : ~0u;
   }
 
+  OwnDiagnostics diagnostics;
   EndOfInstant end_of_instant{"end_of_instant"};
   bus::CrossbarParams xbar_params;
   bus::ConfigBusParams config_params;
@@ -346,7 +348,7 @@ TEST(EdmaBlockTest, AnEnabledInterruptOfATransferControllerIsSaidToBeUnconnected
       r.at_end_of(kPsPerUs / 2, [&r, &out, offset, word] {
         r.access(offset, true, word);
         unsigned warnings = 0;
-        for (const auto& [what, n] : Diagnostics::instance().counts())
+        for (const auto& [what, n] : r.diagnostics.counts())
           if (what.second.find("EDMATC3 (INTEN, INTCMD) is not connected") != std::string::npos) ++warnings;
         out = std::to_string(warnings);
       });
@@ -366,7 +368,7 @@ TEST(EdmaBlockTest, AnInterruptOfAShadowRegionThatLeadsNowhereIsSaidToBeUnconnec
       r.at_end_of(4 * kPsPerUs, [&r, &out, region] {
         const std::string warning = "shadow region " + std::to_string(region) + " is not connected";
         unsigned warnings = 0;
-        for (const auto& [what, n] : Diagnostics::instance().counts())
+        for (const auto& [what, n] : r.diagnostics.counts())
           if (what.second.find(warning) != std::string::npos) ++warnings;
         out = text("%u %u", warnings, static_cast<unsigned>(r.cc->stats.interrupts.count()));
       });
@@ -427,9 +429,9 @@ TEST(EdmaBlockTest, MmraerrInterruptsIfItIsEnabled) {
 }
 
 /// How often a warning that contains `words` came.
-std::uint64_t warned(const std::string& words) {
+std::uint64_t warned(const Rig& r, const std::string& words) {
   std::uint64_t times = 0;
-  for (const auto& [what, n] : Diagnostics::instance().counts())
+  for (const auto& [what, n] : r.diagnostics.counts())
     if (what.second.find(words) != std::string::npos) times += n;
   return times;
 }
@@ -438,7 +440,7 @@ std::uint64_t warned(const std::string& words) {
 TEST(EdmaBlockTest, ARequestThatWaitsForAControllerWithoutClockIsSaidToWait) {
   const std::string seen = one_transfer([](Rig& r, std::string& out) {
     const auto look = [&r, &out] {
-      const auto waits = warned("EDMA: a request waits for transfer controller 3, which has no clock");
+      const auto waits = warned(r, "EDMA: a request waits for transfer controller 3, which has no clock");
       out += text("%u:%u ", static_cast<unsigned>(waits), read(r.cc->regs, 0x2068) >> kChannel & 1);  // IPR
     };
     r.at_end_of(kPsPerUs / 2, [&r] { r.tc_on.write(false); });
@@ -473,8 +475,9 @@ TEST(EdmaBlockTest, AQueueThatWaitsDoesNotHoldBackTheOthers) {
 TEST(EdmaBlockTest, AnEnabledEventWithoutClockIsSaidToBeLost) {
   const std::string seen = one_transfer([](Rig& r, std::string& out) {
     const auto look = [&r, &out] {
-      out += text("%u:%x ", static_cast<unsigned>(warned("EDMA: event 5 is lost: the channel controller has no clock")),
-                  read(r.cc->regs, 0x1000) | read(r.cc->regs, 0x1038));  // ER, SER
+      out +=
+          text("%u:%x ", static_cast<unsigned>(warned(r, "EDMA: event 5 is lost: the channel controller has no clock")),
+               read(r.cc->regs, 0x1000) | read(r.cc->regs, 0x1038));  // ER, SER
     };
     const auto gated = [&r](unsigned channel) {
       r.cc_on.write(false);

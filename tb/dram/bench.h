@@ -123,7 +123,7 @@ class DdrBench {
   explicit DdrBench(const BenchOptions& o = {})
       : params_(o),
         store_(params_.size_bytes()),
-        ddr(params_, store_),
+        ddr(params_, store_, diagnostics),
         checker(with_faw(sheet_of(o.config), o.tFAW)) {
     listening = ddr.observe_commands(&DdrBench::hook, this);
     ddr.set_clocks(o.ddr, o.scr, 0);
@@ -191,6 +191,7 @@ class DdrBench {
   }
   mem::BackingStore& store() { return store_; }
 
+  Diagnostics diagnostics;  ///< of the controller
   std::vector<Logged> log;
   std::vector<Request*> read_order;    // as answered
   std::vector<Request*> accept_order;  // as taken

@@ -29,9 +29,8 @@ struct Checked {
   } params;
   DdrBench bench;
   mem::DdrCheck check;
-  explicit Checked(const std::vector<std::pair<std::string, std::string>>& keys,
-                   const BenchOptions& o = {})
-      : params(keys), bench(o), check(params, bench.ddr) {}
+  explicit Checked(const std::vector<std::pair<std::string, std::string>>& keys, const BenchOptions& o = {})
+      : params(keys), bench(o), check(params, bench.ddr, bench.diagnostics) {}
 };
 
 std::vector<std::string> violations(const mem::DdrConfig& c, const char* part, Frequency clock,
@@ -217,10 +216,9 @@ TEST(ProgrammingTest, MobilePartsHaveTheirOwnSheet) {
   }
 }
 
-std::vector<std::pair<std::string, std::uint64_t>> warnings() {
+std::vector<std::pair<std::string, std::uint64_t>> warnings(const Checked& x) {
   std::vector<std::pair<std::string, std::uint64_t>> out;
-  for (const auto& [what, count] : Diagnostics::instance().counts())
-    out.emplace_back(what.second, count);
+  for (const auto& [what, count] : x.bench.diagnostics.counts()) out.emplace_back(what.second, count);
   return out;
 }
 
@@ -252,14 +250,13 @@ BenchOptions at_340(const mem::DdrConfig& c) {
 TEST(CommandCheckTest, RunsWarnAboutTheBusWithParameterMarginAndTime) {
   const mem::DdrConfig shipped = words(67, 5, 5, 6, 15, 20, 3, 3, 3, 1896, 9);
   for (const char* key : {"none", "commands"}) {
-    Diagnostics::instance().clear();
     Checked x({{"part", "mt47h128m16"}, {"check", key}}, at_340(shipped));
     open_eight_banks(x);
     if (std::string(key) == "none") {
-      EXPECT_THAT(warnings(), IsEmpty());
+      EXPECT_THAT(warnings(x), IsEmpty());
       continue;
     }
-    const auto said = warnings();
+    const auto said = warnings(x);
     ASSERT_EQ(said.size(), 3u);
     EXPECT_THAT(said[0].first, HasSubstr("SDRAM command bus: tFAW, 1 clock (2.94 ns) short of "
                                          "MT47H128M16-25E at 340 MHz, first at 0.0000001"));
@@ -271,28 +268,26 @@ TEST(CommandCheckTest, RunsWarnAboutTheBusWithParameterMarginAndTime) {
 }
 
 TEST(CommandCheckTest, NoWarningWithinTheSheet) {
-  Diagnostics::instance().clear();
   Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(awake()));
   open_eight_banks(x);
-  EXPECT_THAT(warnings(), IsEmpty());
+  EXPECT_THAT(warnings(x), IsEmpty());
 }
 
 // Before a boot loader has set it up the controller refreshes at a slow clock, and nothing is lost.
 TEST(CommandCheckTest, NothingIsSaidBeforeTheFirstUse) {
-  Diagnostics::instance().clear();
   mem::DdrConfig c = awake();
   c.refresh_interval = 40'000;  // 9 intervals of 7.8 us are 23,868 clocks
   Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(c));
   x.bench.ddr.catch_up(10 * kPsPerMs);
   EXPECT_GT(x.bench.count(mem::Cmd::kRef), 10u);
-  EXPECT_THAT(warnings(), IsEmpty());
+  EXPECT_THAT(warnings(x), IsEmpty());
   Request r;
   x.bench.submit_at(r, 10 * kPsPerMs + 1);
   x.bench.drain();
-  EXPECT_THAT(warnings(), IsEmpty());
+  EXPECT_THAT(warnings(x), IsEmpty());
   x.bench.ddr.catch_up(20 * kPsPerMs);
   const std::string beyond = "tREFI, " + std::to_string(40'000 - 9 * 2'652) + " clocks (";
-  EXPECT_THAT(warnings(), Contains(Pair(HasSubstr(beyond), Gt(1u)))) << "9 tREFI of 2652 clocks";
+  EXPECT_THAT(warnings(x), Contains(Pair(HasSubstr(beyond), Gt(1u)))) << "9 tREFI of 2652 clocks";
 }
 
 // The model's commands against numbers that it was not given: its own defect, not the guest's.
@@ -313,7 +308,6 @@ TEST(CommandCheckDeathTest, CommandAgainstTheProgrammedTimingIsADefect) {
 // Registers and clocks change under traffic: what was given before is not held against new numbers,
 // what comes after is.
 TEST(CommandCheckTest, FollowsChangesOfRegistersAndClock) {
-  Diagnostics::instance().clear();
   mem::DdrConfig c = awake();
   Checked x({{"part", "mt47h128m16"}, {"check", "commands"}}, at_340(c));
   Rng rng(7);
@@ -341,7 +335,7 @@ TEST(CommandCheckTest, FollowsChangesOfRegistersAndClock) {
     x.bench.submit_at(r, now);
   }
   x.bench.drain();
-  EXPECT_THAT(warnings(), IsEmpty()) << "and no defect either";
+  EXPECT_THAT(warnings(x), IsEmpty()) << "and no defect either";
 }
 
 }  // namespace

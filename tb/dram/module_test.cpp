@@ -9,6 +9,7 @@
 #include "model/common/burst_master.h"
 #include "model/common/end_of_instant.h"
 #include "model/mem/ddr_module.h"
+#include "tb/own_diagnostics.h"
 
 namespace fovea::dram {
 namespace {
@@ -25,6 +26,7 @@ struct SlowBlock : WithRegs<SlowRegs>, BusTarget {
 };
 
 struct Bench {
+  OwnDiagnostics diagnostics;
   bus::CrossbarParams xbar_params;
   bus::ConfigBusParams config_params;
   mem::DdrParams ddr_params;
@@ -227,7 +229,7 @@ TEST_F(ModuleTest, LatencyStatisticsTakeTheFirstBeat) {
 /// Warnings that contain this text.
 std::uint64_t warnings(const std::string& text) {
   std::uint64_t n = 0;
-  for (const auto& [what, count] : Diagnostics::instance().counts())
+  for (const auto& [what, count] : bench->diagnostics.counts())
     if (what.second.find(text) != std::string::npos) n += count;
   return n;
 }
@@ -235,7 +237,7 @@ std::uint64_t warnings(const std::string& text) {
 // The row address bits above the part's are not connected: U-Boot's get_ram_size() writes at powers of
 // two up to the largest size and finds the part's where a write comes back at the beginning.
 TEST_F(ModuleTest, AddressesRepeatAtThePartsSizeUpToTheEndOfTheWindow) {
-  Diagnostics::instance().clear();
+  b.diagnostics.clear();
   constexpr std::uint32_t kSize = 128u << 20, kAt = 0x12340;
   std::array<std::uint8_t, 64> bytes{};
   const auto round_trip = [&](std::uint32_t to, std::uint32_t from, std::uint8_t value) {
@@ -305,7 +307,7 @@ TEST_F(ModuleTest, SdramIsInitialisedWhenItsTimingIsLockedAndPowerAndClockAreOn)
 
 // The registers hold their reset pattern but for SDRCR: all times are long, T_RC is not above T_RAS.
 TEST_F(ModuleTest, ProgrammingIsLookedAtOnceWithTheFirstAccessAfterAChange) {
-  Diagnostics::instance().clear();
+  b.diagnostics.clear();
   const auto write = [&](std::uint32_t offset, std::uint32_t value) {
     EXPECT_EQ(b.ddr.regs.write(offset, 4, value), Access::kOk);
   };
@@ -316,7 +318,7 @@ TEST_F(ModuleTest, ProgrammingIsLookedAtOnceWithTheFirstAccessAfterAChange) {
     run_for(5 * kPsPerUs);
   };
   write(0x0C, 1896);
-  EXPECT_EQ(Diagnostics::instance().counts().size(), 0u) << "others may be written still";
+  EXPECT_EQ(b.diagnostics.counts().size(), 0u) << "others may be written still";
   read_some();
   EXPECT_EQ(warnings("SDRCR RR: 1896 clocks programmed, MT47H64M16-3 needs tREFI at most 7800 ns = "
                     "1895 at 243 MHz: 1 over"),
@@ -333,7 +335,7 @@ TEST_F(ModuleTest, ProgrammingIsLookedAtOnceWithTheFirstAccessAfterAChange) {
 }
 
 TEST_F(ModuleTest, SdramThatIsSwitchedOffAnswersWithABusErrorUntilItIsOnAgain) {
-  Diagnostics::instance().clear();
+  b.diagnostics.clear();
   const auto read_fails = [&](std::uint32_t sdbcr) {
     b.ddr.regs.write(0x08, 4, sdbcr);
     b.done.clear();
@@ -349,7 +351,7 @@ TEST_F(ModuleTest, SdramThatIsSwitchedOffAnswersWithABusErrorUntilItIsOnAgain) {
 }
 
 TEST_F(ModuleTest, TimingIsWrittenWithTimunlockOnly) {
-  Diagnostics::instance().clear();
+  b.diagnostics.clear();
   auto& r = b.ddr.regs;
   const std::uint32_t was = r.sdtimr.get(), was2 = r.sdtimr2.get();
   r.write(0x10, 4, 0x12345678);
@@ -371,7 +373,7 @@ TEST_F(ModuleTest, TimingIsWrittenWithTimunlockOnly) {
 
 // TIMUNLOCK by the manual, BOOTUNLOCK by what the boot loader does; in the write or before it.
 TEST_F(ModuleTest, LatencyIsWrittenWithAnUnlockBitOnly) {
-  Diagnostics::instance().clear();
+  b.diagnostics.clear();
   auto& r = b.ddr.regs;
   const auto latency_after = [&](std::uint32_t sdbcr) {
     r.write(0x08, 4, sdbcr);
@@ -415,7 +417,7 @@ TEST_F(ModuleTest, PhyIsNotReadyWhileTheMemorysClockStands) {
   run_for(10 * kPsPerUs);
   EXPECT_EQ(b.done.size(), 1u);
   EXPECT_EQ(phy(), 0u) << "asleep again";
-  Diagnostics::instance().clear();
+  b.diagnostics.clear();
   b.ddr_clk.write(Frequency());
   run_for(kPsPerMs);
   EXPECT_EQ(warnings("outside self-refresh"), 0u);

@@ -24,7 +24,7 @@ constexpr unsigned kInterval = 100;
 /// With the levels of the controller's family.
 struct Refresh {
   mem::DdrStats stats;
-  mem::RefreshManager manager{{.release = 3, .need = 7, .must = 11, .gap = 7}, stats};
+  mem::RefreshManager manager{{.release = 3, .need = 7, .must = 11, .gap = 7}, stats, {}};
   Refresh() { manager.set_interval(kInterval, 0); }
   void expire(unsigned intervals) {
     for (; intervals; --intervals) manager.count_expired(manager.next_expiry());

@@ -13,10 +13,9 @@ struct PathRequest : MemRequest {
 /// Requests are PathRequests; addresses count from the beginning of the SDRAM.
 class Path : private memsys::MemoryHost {
  public:
-  explicit Path(Frequency ddr_clock = Frequency(250'000'000),
-                Frequency scr_clock = Frequency(125'000'000), const std::string& scheduler = "ti")
-      : ddr_params_(scheduler),
-        memory(xbar_params_, ddr_params_, {.ddr_base = 0}, *this) {
+  explicit Path(Frequency ddr_clock = Frequency(250'000'000), Frequency scr_clock = Frequency(125'000'000),
+                const std::string& scheduler = "ti")
+      : ddr_params_(scheduler), memory(xbar_params_, ddr_params_, {.ddr_base = 0}, *this, diagnostics) {
     xbar.set_clock(scr_clock, 0);
     ddr.set_clocks(ddr_clock, scr_clock, 0);
   }
@@ -29,6 +28,7 @@ class Path : private memsys::MemoryHost {
   void step() { run_before(next_decision() + 1); }
   void run_before(Picoseconds at) { memory.advance_through(at); }
   void drain() { run_before(kNever); }
+  Diagnostics diagnostics;  ///< of the memory system
 
  private:
   void completed(MemRequest& r) override { ++static_cast<PathRequest&>(r).responses; }

@@ -29,8 +29,7 @@ struct Setup {
 /// The production controller with the questions of the comparison.
 class Production {
  public:
-  explicit Production(const Setup& s)
-      : params_(s), store_(params_.size_bytes()), ddr_(params_, store_) {
+  explicit Production(const Setup& s) : params_(s), store_(params_.size_bytes()), ddr_(params_, store_, {}) {
     listening_ = ddr_.observe_commands(
         [](void* self, mem::Cmd c, unsigned bank, std::uint32_t row, std::uint64_t clock) {
           static_cast<Production*>(self)->command(c, bank, row, clock);

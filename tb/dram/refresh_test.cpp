@@ -238,7 +238,6 @@ struct Postponed {
   std::uint64_t warned, most, on_the_bus, worst;
 };
 Postponed postponed(const char* must) {
-  Diagnostics::instance().clear();
   BenchOptions o;
   o.config.refresh_interval = 1950;  // 7.8 us at 250 MHz
   o.params = {{"refresh.release", "3"}, {"refresh.need", must}, {"refresh.must", must},
@@ -254,7 +253,7 @@ Postponed postponed(const char* must) {
   PartChecker sheet(find_part("mt47h64m16", "25e"), kDdr, o.config.timing.CL);
   for (const Logged& l : b.log) sheet.command(translate(l.cmd), l.bank, l.row, l.clock);
   Postponed p{0, std::get<std::uint64_t>(b.ddr.stats.refresh_backlog.value()), 0, 0};
-  for (const auto& [what, n] : Diagnostics::instance().counts())
+  for (const auto& [what, n] : b.diagnostics.counts())
     if (what.second.find("JESD79-2 allows") != std::string::npos) p.warned += n;
   const auto found = sheet.warnings().find("postponed REF");
   if (found != sheet.warnings().end())

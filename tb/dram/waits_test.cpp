@@ -145,7 +145,7 @@ class Banks {
   static constexpr Picoseconds kClock = 4'000;
   /// `looks`: in between somebody looks at the statistics, as a debugger or the kernel's turn does.
   explicit Banks(std::uint64_t seed, bool looks = false)
-      : rng_(seed), look_(seed + 1), looks_(looks), store_(params_.size_bytes()), ddr_(params_, store_) {
+      : rng_(seed), look_(seed + 1), looks_(looks), store_(params_.size_bytes()), ddr_(params_, store_, {}) {
     ddr_.set_clocks(Frequency(250'000'000), Frequency(125'000'000), 0);
     mem::DdrConfig config;
     config.refresh_interval = 400;

@@ -84,7 +84,7 @@ TEST(ChipTest, EachTimerHasItsGateAndItsInterrupts) {
 
 TEST(ChipTest, ArmIntmuxTakesAPinsInterruptAwayAndSaysWhatIsNotModelled) {
   Chip c;
-  auto& notes = Diagnostics::instance();
+  auto& notes = c.rig.diagnostics;
   const auto pending_after_rise_of = [&](unsigned pin) {
     c.soc.gpio.set_pin(pin, false);
     c.rig.advance(kPsPerUs);
@@ -117,7 +117,7 @@ TEST(ChipTest, ABlockWhosePinsPinmuxGivesAwayIsWarnedOfOnce) {
     const char* selection;
   };
   Chip c;
-  auto& notes = Diagnostics::instance();
+  auto& notes = c.rig.diagnostics;
   for (const unsigned lpsc : {18u, 19u, 20u}) c.enable(lpsc);
   const auto send = [&](periph::Uart16550& uart) {
     Chip::write(uart.regs, 0x30, 0x6001);

@@ -36,8 +36,7 @@ TEST(EndToEndTest, WholePalFrameIsCorrectedExactly) {
   expect_lut_right(rig);
   expect_frames_right(rig);
   // The firmware uses nothing that the model lacks, and keeps the chip's rules.
-  for (const auto& [what, times] : Diagnostics::instance().counts())
-    ADD_FAILURE() << times << " times: " << what.second;
+  for (const auto& [what, times] : rig.diagnostics.counts()) ADD_FAILURE() << times << " times: " << what.second;
 }
 
 TEST(EndToEndTest, NtscPairMethodBIsCorrectedExactly) {

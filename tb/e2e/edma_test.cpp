@@ -25,7 +25,7 @@ void expect_good_run(Rig& rig, const std::string& kernel, unsigned frames, bool 
   ASSERT_EQ(rig.shown().size(), frames) << rig.board().uart_text();
   EXPECT_TRUE(uart_has(rig, "kernel: " + kernel + ", ")) << rig.board().uart_text();
   EXPECT_FALSE(uart_has(rig, "EDMA: ")) << rig.board().uart_text();
-  for (const auto& [what, times] : Diagnostics::instance().counts())
+  for (const auto& [what, times] : rig.diagnostics.counts())
     if (!refreshes_late || what.second.find("postponed REF") == std::string::npos)
       ADD_FAILURE() << times << " times: " << what.second;
 }

@@ -11,6 +11,7 @@
 #include "sw/fovea/board/loader.h"
 #include "sw/fovea/board/parameter_page.h"
 #include "sw/lens/lens.h"
+#include "tb/own_diagnostics.h"
 
 namespace fovea::e2e {
 namespace {
@@ -283,12 +284,11 @@ TEST(FootageNotesTest, SayWhatIsNotFollowedOfTheStream) {
 
 // Calibrations that cannot belong to the picture, at the limit and one beyond.
 std::vector<std::string> warnings_of(const Keys& keys, unsigned width, unsigned height) {
-  Diagnostics::instance().clear();
+  const OwnDiagnostics diagnostics;
   Settings s(keys);
   s.params.camera.check_calibration(width, height);
   std::vector<std::string> out;
-  for (const auto& [what, count] : Diagnostics::instance().counts()) out.push_back(what.second);
-  Diagnostics::instance().clear();
+  for (const auto& [what, count] : diagnostics.counts()) out.push_back(what.second);
   return out;
 }
 
@@ -321,14 +321,13 @@ TEST(CalibrationCheckTest, ACentreOutsideTheMiddleThirdIsWarnedOf) {
 
 TEST(CalibrationCheckTest, OneLensSetAloneIsWarnedOf) {
   const auto said = [](const Keys& keys) {
-    Diagnostics::instance().clear();
+    const OwnDiagnostics diagnostics;
     Settings s(keys);
     const auto source = video::make_picture_source(
         s.params.camera, {RgbImage{960, 640, std::vector<std::uint8_t>(960 * 640 * 3)}}, 720, 576);
     app::parameter_page(s.params, *source);
     std::vector<std::string> out;
-    for (const auto& [what, count] : Diagnostics::instance().counts()) out.push_back(what.second);
-    Diagnostics::instance().clear();
+    for (const auto& [what, count] : diagnostics.counts()) out.push_back(what.second);
     return out;
   };
   const Keys base{{"camera.kind", "sphere"}, {"lens.mapping", "kannala_brandt"}};
@@ -422,12 +421,12 @@ TEST(CameraRowTest, SettingsThatCannotBeAreRefused) {
 
 /// A fault of one camera: the program that `fovea run` takes and the warnings about keys, or the refusal.
 std::string fault_of_one(const Keys& keys) {
-  Diagnostics::instance().clear();
+  const OwnDiagnostics diagnostics;
   try {
     Settings s(keys);
     app::complete_params(s.params);
     std::string out = app::program_file(s.params).filename().string();
-    for (const auto& [kind, count] : Diagnostics::instance().counts()) out += "; " + kind.second;
+    for (const auto& [kind, count] : diagnostics.counts()) out += "; " + kind.second;
     return out;
   } catch (const UserError& e) {
     return e.what();
@@ -495,17 +494,16 @@ TEST(RegionTest, LiesInThePicture) {
 }
 
 TEST(RegionTest, WithoutALensTheRowOfACameraIsWarnedOf) {
-  Diagnostics::instance().clear();
+  const OwnDiagnostics diagnostics;
   Keys keys{{"lens.mapping", "none"}};
   const auto whole = Settings(keys).lut();
   keys["camera.0.lens.roi"] = "[100, 50, 360, 300]";
   EXPECT_EQ(Settings(keys).lut(), whole);
-  const auto said = Diagnostics::instance().counts();
+  const auto said = diagnostics.counts();
   ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said.begin()->first.second,
             "camera.0.lens.roi has no effect: it needs a lens.mapping other than none and a firmware.view other than "
             "birds_eye");
-  Diagnostics::instance().clear();
 }
 
 // Every key that declares a condition names it in a way that a sentence can end with, and its

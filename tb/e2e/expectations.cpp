@@ -5,12 +5,10 @@
 #include <cstdio>
 #include <optional>
 
-#include "model/common/check.h"
-
 namespace fovea::e2e {
 
-void expect_no_warnings() {
-  for (const auto& [kind, count] : Diagnostics::instance().counts())
+void expect_no_warnings(const Rig& rig) {
+  for (const auto& [kind, count] : rig.diagnostics.counts())
     ADD_FAILURE() << "warning: " << kind.second << " (" << count << " times)";
 }
 

@@ -9,7 +9,7 @@
 namespace fovea::e2e {
 
 /// The run has given no warning.
-void expect_no_warnings();
+void expect_no_warnings(const Rig& rig);
 
 /// Every entry of each table in target memory must equal the oracle's. An entry within 0.02 px of a
 /// boundary, where two roundings may both be right, may be the neighbouring one (at most one in

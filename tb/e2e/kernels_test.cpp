@@ -98,7 +98,7 @@ TEST_P(WholeFrameTest, IsExactAndWithoutWarnings) {
   EXPECT_EQ(f.dropped, 0u);
   EXPECT_EQ(f.repeated, 0u);
   EXPECT_EQ(rig.board().dm365.isif.stats.overflows.count(), 0u);
-  for (const auto& [what, times] : Diagnostics::instance().counts()) {
+  for (const auto& [what, times] : rig.diagnostics.counts()) {
     // The engine keeps the SDRAM so busy that the controller postpones refreshes for longer than JESD79-2 allows.
     if (GetParam().engine != std::string("none") && what.second.find("postponed REF") != std::string::npos) continue;
     ADD_FAILURE() << times << " times: " << what.second;
@@ -227,8 +227,7 @@ TEST_P(EngineMapTest, ThePictureIsTheGoldenModels) {
     EXPECT_TRUE(found) << "frame " << s.record.index << " is not the golden model's picture of a sent frame";
   }
   EXPECT_LT(black, kWidth * kHeight / 4);
-  for (const auto& [what, times] : Diagnostics::instance().counts())
-    ADD_FAILURE() << times << " times: " << what.second;
+  for (const auto& [what, times] : rig.diagnostics.counts()) ADD_FAILURE() << times << " times: " << what.second;
 }
 INSTANTIATE_TEST_SUITE_P(Maps, EngineMapTest, testing::Values("engine_grid", "engine_radial"),
                          [](const auto& i) { return std::string(i.param); });

@@ -129,7 +129,7 @@ TEST(EdmaTest, ItsConfigurationIsTrueAndTheClockGateHolds) {
   rig.build();
   auto& soc = rig.board().dm365;
   rig.advance(kPsPerUs);
-  auto& said = Diagnostics::instance();
+  auto& said = rig.diagnostics;
   said.clear();
   using Kind = Diagnostics::Kind;
   EXPECT_EQ(access(soc, false, 0x284, 0), 0u);

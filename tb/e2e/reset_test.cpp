@@ -341,8 +341,7 @@ TEST_P(FirmwareReset, ShowsRightFramesAgain) {
   EXPECT_GT(again, 5u);
   EXPECT_EQ(board.sink.stats.violations.count(), 0u);
   EXPECT_EQ(board.sink.stats.underflows.count(), 0u);
-  for (const auto& [what, times] : Diagnostics::instance().counts())
-    ADD_FAILURE() << times << " times: " << what.second;
+  for (const auto& [what, times] : rig.diagnostics.counts()) ADD_FAILURE() << times << " times: " << what.second;
 }
 
 }  // namespace

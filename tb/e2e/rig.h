@@ -10,6 +10,7 @@
 #include "sw/fovea/program/elf_image.h"
 #include "tb/oracle/frame_compare.h"
 #include "tb/oracle/lens_oracle.h"
+#include "tb/own_diagnostics.h"
 
 namespace fovea::e2e {
 
@@ -32,6 +33,7 @@ struct FwState {
 
 class Rig {
  public:
+  OwnDiagnostics diagnostics;  ///< of the board and of reading its parameters
   /// @param elf a file in the firmware's build folder, or a path with a slash in it
   explicit Rig(std::string elf = "fovea_firmware.elf");
   ~Rig();

@@ -21,6 +21,7 @@
 #include "sw/fovea/files/ffmpeg.h"
 #include "sw/fovea/machine/machine.h"
 #include "sw/fovea/results/outputs.h"
+#include "tb/own_diagnostics.h"
 
 namespace fovea::e2e {
 namespace {
@@ -236,14 +237,13 @@ TEST(RunTest, NtscWindowHasTheTelevisionRate) {
 // needs a part of the grade that has such a clock.
 class EveryPreset : public testing::TestWithParam<const char*> {};
 TEST_P(EveryPreset, RunsWithoutWarnings) {
-  Diagnostics::instance().clear();
+  const OwnDiagnostics diagnostics;
   const std::string preset = GetParam();
   const auto r = run({{"clocks.preset", preset}, {"video.width", "64"}, {"video.height", "16"},
                       {"run.frames", "2"},
                       {"ddr.grade", preset == "432/340" ? "25e" : "3"}});
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
-  for (const auto& [what, times] : Diagnostics::instance().counts())
-    ADD_FAILURE() << what.second << ", " << times << " times";
+  for (const auto& [what, times] : diagnostics.counts()) ADD_FAILURE() << what.second << ", " << times << " times";
 }
 INSTANTIATE_TEST_SUITE_P(RunTest, EveryPreset,
                          testing::Values("297/243", "297/270", "270/216", "216/172", "432/340"),
@@ -256,14 +256,13 @@ INSTANTIATE_TEST_SUITE_P(RunTest, EveryPreset,
 // Clocks between the presets, in the ranges of their PLLs: exact in the core's count of clocks and in the SDRAM's.
 class FreeClocks : public testing::TestWithParam<std::pair<int, int>> {};
 TEST_P(FreeClocks, RunWithoutWarnings) {
-  Diagnostics::instance().clear();
+  const OwnDiagnostics diagnostics;
   const auto [core, ddr] = GetParam();
   const auto r = run({{"clocks.arm", std::to_string(core) + "MHz"}, {"clocks.ddr", std::to_string(ddr) + "MHz"},
                       {"video.width", "64"}, {"video.height", "16"}, {"run.frames", "2"}});
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   EXPECT_NEAR(static_cast<double>(count(r, "cpu.cycles")), 0.08 * core * 1e6, 200);
-  for (const auto& [what, times] : Diagnostics::instance().counts())
-    ADD_FAILURE() << what.second << ", " << times << " times";
+  for (const auto& [what, times] : diagnostics.counts()) ADD_FAILURE() << what.second << ", " << times << " times";
 }
 INSTANTIATE_TEST_SUITE_P(RunTest, FreeClocks,
                          testing::Values(std::pair{27, 333}, std::pair{135, 162}, std::pair{300, 135},
@@ -554,11 +553,12 @@ TEST(RunTest, ColourBarsComeToTheDisplayAsTheyAreSent) {
 // A load that begins at power-up by default waits until boot software has brought up the SDRAM, and the
 // guest is not blamed for it.
 TEST(RunTest, LoadWithTheDefaultStartWaitsForTheSdram) {
+  const OwnDiagnostics diagnostics;
   const auto r = run({{"video.width", "64"}, {"video.height", "16"}, {"run.frames", "2"},
                       {"load.outstanding", "1"}});
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   EXPECT_GT(count(r, "bus.load.read_bytes"), 1'000'000u);
-  for (const auto& [what, n] : Diagnostics::instance().counts()) {
+  for (const auto& [what, n] : diagnostics.counts()) {
     EXPECT_EQ(what.second.find("before its controller runs"), std::string::npos) << what.second;
     EXPECT_EQ(what.second.find("SDBCR CL: 4"), std::string::npos)
         << "the loader's passing CL is nobody's to see: " << what.second;

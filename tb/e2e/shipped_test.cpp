@@ -64,7 +64,7 @@ TEST_P(ShippedTest, EveryFrameIsExactInOrderAndInTime) {
   EXPECT_EQ(f.repeated, 0u);
   EXPECT_EQ(rig.board().dm365.isif.stats.overflows.count(), 0u);
   EXPECT_EQ(rig.board().sink.stats.underflows.count(), 0u);
-  expect_no_warnings();
+  expect_no_warnings(rig);
 }
 
 // Remaps without waiting for the camera: old frames are shown again. Four tables and four sources take
@@ -81,7 +81,7 @@ void expect_exact_in_turn(unsigned frames) {
   EXPECT_EQ(views, (std::set<unsigned>{0, 1, 2, 3}));
   EXPECT_EQ(rig.board().dm365.isif.stats.overflows.count(), 0u);
   EXPECT_EQ(rig.board().sink.stats.underflows.count(), 0u);
-  expect_no_warnings();
+  expect_no_warnings(rig);
 }
 TEST(ThroughputTest, EveryFrameIsExactAndNoneIsOlderThanTheOneBefore) { expect_exact_in_turn(5); }
 TEST(ThroughputTest, NightlyTwentyFiveFramesAreExact) { expect_exact_in_turn(25); }

@@ -34,7 +34,7 @@ TEST_P(StagedSizeTest, PictureIsExact) {
   ASSERT_EQ(rig.shown().size(), 4u) << rig.board().uart_text();
   EXPECT_TRUE(said(rig, kUsed)) << rig.board().uart_text();
   expect_frames_right(rig);
-  expect_no_warnings();
+  expect_no_warnings(rig);
 }
 INSTANTIATE_TEST_SUITE_P(Sizes, StagedSizeTest,
                          testing::Values(std::pair{160u, 48u}, std::pair{172u, 100u},
@@ -51,7 +51,7 @@ TEST(StagedTest, ShippedLensAtFullSizeIsExact) {
   ASSERT_EQ(rig.shown().size(), 2u) << rig.board().uart_text();
   EXPECT_TRUE(said(rig, kUsed)) << rig.board().uart_text();
   expect_frames_right(rig);
-  expect_no_warnings();
+  expect_no_warnings(rig);
 }
 
 /// The status box goes through the D-cache into a result that the EDMA has written, and stays in a cache that
@@ -88,7 +88,7 @@ TEST(StagedTest, BlackRimIsPainted) {
   const auto lut = rig.lut();
   EXPECT_GT(std::count(lut.begin(), lut.end(), 64u * 512), 800);
   expect_frames_right(rig);
-  expect_no_warnings();
+  expect_no_warnings(rig);
 }
 
 struct Refused {

@@ -8,6 +8,7 @@
 #include "model/common/host_time_slicer.h"
 #include "model/engine/remap_engine.h"
 #include "sw/fovea/board/loader.h"
+#include "tb/own_diagnostics.h"
 #include "tb/soc/reach.h"
 
 namespace fovea::engine {
@@ -70,6 +71,7 @@ struct Chip : testing::Test {
         if (word(kTarget + 4 * (j * pitch + i)) != (j * kPairs + i) * 0x0101'0101 + 7) return false;
     return true;
   }
+  OwnDiagnostics diagnostics;
   board::BoardParams params;
   ParamSet set;
   std::unique_ptr<video::PictureSource> source;
@@ -184,7 +186,7 @@ TEST_F(Chip, AWriteOfSomeBytesKeepsTheOthers) {
 TEST_F(Chip, ABusErrorIsNamedByItsDirection) {
   constexpr std::uint32_t kNowhere = 0x0700'0000;
   std::vector<std::string> said;
-  Diagnostics::instance().set_sink([&](Diagnostics::Kind, const std::string& text) {
+  diagnostics.set_sink([&](Diagnostics::Kind, const std::string& text) {
     if (text.starts_with("remap engine")) said.push_back(text);  // the bus says its own
   });
   const auto make = [&](const Reg& base) {
@@ -203,7 +205,6 @@ TEST_F(Chip, ABusErrorIsNamedByItsDirection) {
   ASSERT_FALSE(said.empty());
   for (const std::string& text : said) EXPECT_THAT(text, testing::HasSubstr("a write that nobody answers"));
   EXPECT_EQ(get(engine().regs.ended) >> 8 & 0xFF, 8u);
-  Diagnostics::instance().set_sink({});
 }
 
 /// A reset of the engine alone, so that a job can begin while requests from before it are still under way.

@@ -27,6 +27,7 @@
 #include "tb/fuzz/guests.h"
 #include "tb/fuzz/input_file.h"
 #include "tb/fuzz/planted.h"
+#include "tb/own_diagnostics.h"
 #include "tb/unit/gdb_fake_target.h"
 
 namespace fovea::fuzz {
@@ -230,7 +231,7 @@ constexpr Reader kReaders[] = {
 std::span<const Reader> readers() { return kReaders; }
 
 Result run(const Reader& reader, std::string_view bytes) {
-  Diagnostics::instance().clear();
+  const OwnDiagnostics diagnostics;
   try {
     return reader.read(bytes);
   } catch (const UserError& e) {

@@ -150,7 +150,7 @@ TEST(CoreDebugTest, LooksAndWritesTakeNoTime) {
 TEST(CoreDebugTest, WithoutTcmItsWindowsAreMemory) {
   const Machine::Params params({});
   FlatPort port(0, 0x20000);
-  Core core(params, port, {});
+  Core core(params, port, {}, {});
   port.attach(&core);
   core.set_clock(Frequency(250'000'000), 0);
   const Subscription exit = core.handle_swi([](Core& c, std::uint32_t) {

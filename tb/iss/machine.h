@@ -45,12 +45,13 @@ class MachineWith {
   } params;
   Port port{kMemory, kMemoryBytes};
   std::vector<std::uint8_t> tcm = std::vector<std::uint8_t>(32 * 1024);
+  Diagnostics diagnostics;  ///< of the core
   Core core;
   std::vector<std::uint64_t> marks;  ///< clock of each `svc #1`
   std::string output;                ///< output of the program by Linux' write()
   int exit_status = -1;
 
-  explicit MachineWith(const Settings& settings = {}) : params(settings), core(params, port, tcm) {
+  explicit MachineWith(const Settings& settings = {}) : params(settings), core(params, port, tcm, diagnostics) {
     port.attach(&core);
     core.set_clock(Frequency(250'000'000), 0);
     svc_handling = core.handle_swi([this](Core& c, std::uint32_t n) { return swi(c, n); });

@@ -11,15 +11,13 @@ class MessageTest : public testing::Test {
  protected:
   Machine m;
   MessageTest() {
-    Diagnostics::instance().clear();
     m.core.describe = [](std::uint32_t a) {
       return a >= 0x300 && a < 0x400 ? "late" : std::string();
     };
   }
-  ~MessageTest() override { Diagnostics::instance().clear(); }
-  static std::map<std::string, std::uint64_t> warnings() {
+  std::map<std::string, std::uint64_t> warnings() const {
     std::map<std::string, std::uint64_t> out;
-    for (const auto& [key, n] : Diagnostics::instance().counts()) out[key.second] = n;
+    for (const auto& [key, n] : m.diagnostics.counts()) out[key.second] = n;
     return out;
   }
   /// Runs until nothing helps. @return what is said then
@@ -49,6 +47,13 @@ TEST_F(MessageTest, UnpredictableFormNamesItsFirstPlace) {
 TEST_F(MessageTest, UnpredictableFormNamesItsFunction) {
   m.execute("mov r0, #0x4000\n .inst 0xe4900004\n", 0x300);
   EXPECT_EQ(warnings().count("UNPREDICTABLE: ldr imm post, first at 0x00000304 (late)"), 1u);
+}
+
+TEST_F(MessageTest, AnotherCoreOfTheProcessIsNotHeard) {
+  Machine other;
+  other.execute("mov r0, #0x4000\n .inst 0xe4900004\n");
+  EXPECT_TRUE(warnings().empty());
+  EXPECT_EQ(other.diagnostics.counts().size(), 1u);
 }
 
 TEST_F(MessageTest, JumpToZeroSaysWhereFrom) {

@@ -82,7 +82,7 @@ class SystemMachine {
   std::string output;
   int exit_status = -1;
 
-  SystemMachine() : core(params, port, tcm) {
+  SystemMachine() : core(params, port, tcm, {}) {
     port.core = &core;
     port.attach(&core);
     core.set_clock(Frequency(250'000'000), 0);

@@ -10,6 +10,7 @@
 #include "model/video/scene/ahead.h"
 #include "model/video/scene/bars.h"
 #include "model/video/scene/scene_params.h"
+#include "tb/own_diagnostics.h"
 
 namespace fovea::video {
 namespace {
@@ -386,9 +387,9 @@ TEST(SceneParamsTest, CalibrationThatCannotBelongToThePictureIsNamed) {
   params.lens.set("kannala_brandt");
   const auto named = [&](unsigned width, unsigned height, const char* kb) {
     params.kb.set(kb);
-    Diagnostics::instance().clear();
+    const OwnDiagnostics diagnostics;
     params.check_calibration(width, height);
-    return !Diagnostics::instance().counts().empty();
+    return !diagnostics.counts().empty();
   };
   // The middle of 61 x 31 is at 30, 15; a sixth of the sides is 10 1/6 and 5 1/6.
   EXPECT_FALSE(named(61, 31, "[20, 20, 40.1, 15, 0, 0, 0, 0]"));
@@ -401,7 +402,6 @@ TEST(SceneParamsTest, CalibrationThatCannotBelongToThePictureIsNamed) {
   params.kb_height.set("640px");
   for (const unsigned height : {319u, 320u, 321u}) EXPECT_FALSE(named(480, height, any)) << height;
   for (const unsigned height : {318u, 322u}) EXPECT_TRUE(named(480, height, any)) << height;
-  Diagnostics::instance().clear();
 }
 
 TEST(SceneParamsTest, ComplainsOfWhatCannotBe) {

@@ -6,6 +6,7 @@
 #include "model/periph/psc.h"
 #include "model/periph/system_module.h"
 #include "model/periph/timer64.h"
+#include "tb/own_diagnostics.h"
 #include "tb/periph/bench.h"
 
 namespace fovea::periph {
@@ -26,6 +27,7 @@ enum : std::uint32_t {
 std::uint32_t plldiv(unsigned n) { return n <= 3 ? 0x114 + 4 * n : 0x160 + 4 * (n - 4); }
 
 struct System {
+  OwnDiagnostics diagnostics;
   ClockSignal osc{"osc", Frequency(24'000'000)};
   sc_core::sc_vector<ClockSignal> sysclk1{"sysclk1", 9}, sysclk2{"sysclk2", 5};
   sc_core::sc_signal<bool> locked1{"locked1"}, locked2{"locked2"};
@@ -293,10 +295,10 @@ TEST_F(PllTest, DisabledDividerStopsItsClock) {
 }
 
 TEST_F(PllTest, LockComesLockTimeAfterTheLastChangeAndTheOldFrequencyStaysUntilThen) {
-  Diagnostics::instance().clear();
+  s.diagnostics.clear();
   s.b1.write(kPllm, 0x52);
   const Picoseconds change = now();
-  EXPECT_EQ(Diagnostics::instance().counts().size(), 1u);  // PLLEN is 1
+  EXPECT_EQ(s.diagnostics.counts().size(), 1u);            // PLLEN is 1
   EXPECT_EQ(s.edma.read(), khz(121'500));                  // not bypassed
   run_until(change + s.pll_params.lock_time() - 1);
   EXPECT_EQ(s.bs.read(0x84), 0u);
@@ -352,13 +354,13 @@ TEST_F(PllTest, DchangeShowsRatiosThatDifferFromThoseInEffect) {
 }
 
 TEST_F(PllTest, PllenBeforeTheLockGivesAWarning) {
-  Diagnostics::instance().clear();
+  s.diagnostics.clear();
   s.b1.write(kPllctl, 0x48);  // bypass, in reset
   EXPECT_EQ(s.bs.read(0x84), 0u);
   EXPECT_EQ(s.arm.read(), khz(297'000));  // the ARM is on the other PLL
-  EXPECT_TRUE(Diagnostics::instance().counts().empty());
+  EXPECT_TRUE(s.diagnostics.counts().empty());
   s.b1.write(kPllctl, 0x41);
-  EXPECT_EQ(Diagnostics::instance().counts().size(), 1u);
+  EXPECT_EQ(s.diagnostics.counts().size(), 1u);
 }
 
 TEST_F(PllTest, PostdivAndPrescalerSourceBitsChangeTheOutput) {
@@ -425,7 +427,7 @@ TEST(PscTest, AReservedNextStateChangesNothing) {
 // 52 modules, 0 to 51; behind their registers there is nothing.
 TEST(PscTest, TheRegistersEndWithTheLastModule) {
   System& s = sys();
-  auto& notes = Diagnostics::instance();
+  auto& notes = s.diagnostics;
   for (const std::uint32_t first : {0x800u, 0xA00u}) {
     notes.clear();
     s.bp.read(first + 4 * 51);
@@ -437,9 +439,9 @@ TEST(PscTest, TheRegistersEndWithTheLastModule) {
 
 TEST(PscTest, GatedModuleAnswersAfterItsTransitionAndGivesAWarningBefore) {
   System& s = sys();
-  Diagnostics::instance().clear();
+  s.diagnostics.clear();
   s.bt.write(0x18, 123);
-  EXPECT_EQ(Diagnostics::instance().counts().size(), 1u);
+  EXPECT_EQ(s.diagnostics.counts().size(), 1u);
   s.bp.write(0xA00 + 4 * kLpscTimer3, 3);
   s.bp.write(0x120, 1);
   run_until(now() + s.psc_params.transition_time());
@@ -471,7 +473,7 @@ TEST(SystemModuleTest, PrioritiesAndMiscReachTheirPorts) {
 
 TEST(SystemModuleTest, SettingsWithoutEffectAreNamed) {
   System& s = sys();
-  auto& notes = Diagnostics::instance();
+  auto& notes = s.diagnostics;
   struct Setting {
     std::uint32_t offset, harmless, word;
     const char* name;

@@ -5,6 +5,7 @@
 
 #include "model/periph/aintc.h"
 #include "model/periph/timer64.h"
+#include "tb/own_diagnostics.h"
 #include "tb/periph/bench.h"
 
 namespace fovea::periph {
@@ -17,6 +18,7 @@ constexpr unsigned kMhz24 = 24'000'000;
 Picoseconds edge(std::uint64_t k) { return k * 125'000 / 3; }
 
 struct System {
+  OwnDiagnostics diagnostics;
   ClockSignal clk{"clk", Frequency(kMhz24)};
   sc_core::sc_signal<bool> gate{"gate", true};
   sc_core::sc_signal<bool> tint12{"tint12"}, tint34{"tint34"}, expired{"expired"};
@@ -382,7 +384,7 @@ struct Watcher : RegisterObserver {
 };
 
 TEST_F(TimerTest, WhoLooksOnSeesAccessesAndWarningsAreCounted) {
-  auto& notes = Diagnostics::instance();
+  auto& notes = s.diagnostics;
   const auto count = [&notes](const std::string& part) {
     std::uint64_t n = 0;
     for (const auto& [what, times] : notes.counts())

@@ -144,7 +144,7 @@ TEST(CommandTraceTest, BeginsWithTheOpenRows) {
   const fs::path file = fs::path(testing::TempDir()) / "fovea_open_rows.csv";
   mem::DdrParams params;
   mem::BackingStore store(params.size_bytes());
-  mem::DdrController ddr(params, store);
+  mem::DdrController ddr(params, store, {});
   ddr.set_clocks(dram::kDdr, dram::kDdr, 0);
   mem::DdrConfig config;
   config.refresh_interval = 0;

@@ -1,11 +1,11 @@
 // The player of bus traces: memories and traces that it refuses, and what it warns of.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fmt/format.h>
-
 #include <functional>
 
+#include "tb/own_diagnostics.h"
 #include "tb/replay/played.h"
 #include "tb/replay/support.h"
 
@@ -59,13 +59,13 @@ TEST(ReplayPathTest, EachKindOfMemoryHasItsClocks) {
   using testing::HasSubstr;
   std::vector<std::string> said;
   const auto play = [&](std::vector<std::pair<std::string, std::string>> keys) {
-    Diagnostics::instance().clear();
+    const OwnDiagnostics diagnostics;
     const std::string error = error_of([&] {
       trace::TextTrace t("t", "# dramtrace 1\n# master 0 window 1 a\n0 0 R 0x0 4\n");
       Played(t.info(), t, false, keys);
     });
     said.clear();
-    for (const auto& [what, n] : Diagnostics::instance().counts()) said.push_back(what.second);
+    for (const auto& [what, n] : diagnostics.counts()) said.push_back(what.second);
     return error;
   };
   EXPECT_THAT(play({{"ddr.clock", "124MHz"}}), HasSubstr("125MHz .. 533MHz, DDR2"));

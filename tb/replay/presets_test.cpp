@@ -1,8 +1,7 @@
 // Timing presets against the checker's own data sheets and against figures worked out by hand.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <fmt/format.h>
 
 #include <map>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "sw/fovea/replay/replay_clocks.h"
 #include "sw/fovea/replay/replay_path.h"
 #include "sw/fovea/results/outputs.h"
+#include "tb/own_diagnostics.h"
 #include "tb/replay/support.h"
 
 namespace fovea::replay {
@@ -48,12 +48,12 @@ std::vector<std::string> warnings(const Keyed& setup) {
                         rng.below(3) == 0 ? 'W' : 'R', rng.below(1u << 20) * 64,
                         4u << rng.below(5));
   trace::TextTrace t("t", text);
-  Diagnostics::instance().clear();
+  const OwnDiagnostics diagnostics;
   app::ReplayPath path("t", t.info(), t, setup.params, false);
   EXPECT_TRUE(path.run_before(kNever));
   path.finish();
   std::vector<std::string> said;
-  for (const auto& [what, n] : Diagnostics::instance().counts()) said.push_back(what.second);
+  for (const auto& [what, n] : diagnostics.counts()) said.push_back(what.second);
   return said;
 }
 

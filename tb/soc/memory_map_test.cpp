@@ -6,6 +6,7 @@
 
 #include "model/common/check.h"
 #include "model/periph/clocked_target.h"
+#include "tb/own_diagnostics.h"
 #include "tb/periph/bench.h"
 
 namespace fovea::soc {
@@ -164,6 +165,7 @@ struct Requests : sc_core::sc_module, MemInitiatorIf {
 
 /// Another bus, with the master above.
 struct BurstChip {
+  OwnDiagnostics diagnostics;
   bus::ConfigBusParams params;
   bus::ConfigBus config;
   Block edma{"burst_edma"}, timer{"burst_timer"};
@@ -179,6 +181,7 @@ struct BurstChip {
 };
 
 struct Chip {
+  OwnDiagnostics diagnostics;
   EndOfInstant end_of_instant{"end_of_instant"};
   bus::ConfigBusParams params;
   bus::ConfigBus config{"config",
@@ -212,7 +215,7 @@ Chip& the_chip() {
 
 TEST(MemoryMapTest, ABusErrorNamesTheBlockOnceAndAnUnknownAddressItself) {
   Chip& chip = the_chip();
-  auto& notes = Diagnostics::instance();
+  auto& notes = chip.diagnostics;
   using Kind = Diagnostics::Kind;
   notes.clear();
   EXPECT_FALSE(chip.master.fails(0x01C4'1008));
@@ -299,6 +302,23 @@ TEST(ConfigBusTest, AnErrorOfOneWordIsTheBurstsAndTheOthersAreMadeAllTheSame) {
   EXPECT_EQ(c.edma.regs.r.get(), 0x55u);
   one = {request(Master::kEdmaTc0Write, 0x01C0'0008, out.data(), 4, true)};
   EXPECT_FALSE(c.master.run(one)[0].error) << "the next request is good";
+}
+
+// A block keeps the diagnostics that were current when it was made, whichever are current when it warns.
+TEST(ConfigBusTest, TwoBusesOfOneProcessWarnEachItsOwn) {
+  Chip& chip = the_chip();
+  BurstChip& burst = chip.burst;
+  chip.diagnostics.clear();
+  burst.diagnostics.clear();
+  const auto only = [](const char* text) { return Diagnostics::Counts{{{Diagnostics::Kind::kGuest, text}, 1}}; };
+  std::array<std::uint8_t, 64> data{};
+  std::vector<MemRequest> one{request(Master::kEdmaTc0Read, 0x01C3'0004, data.data(), 4, false)};
+  EXPECT_TRUE(burst.master.run(one)[0].error);
+  EXPECT_EQ(burst.diagnostics.counts(), only("bus error at 0x01c30004"));
+  EXPECT_TRUE(chip.diagnostics.counts().empty());
+  EXPECT_TRUE(chip.master.fails(0x01C3'0000));
+  EXPECT_EQ(burst.diagnostics.counts(), only("bus error at 0x01c30004"));
+  EXPECT_EQ(chip.diagnostics.counts(), only("bus error at 0x01c30000"));
 }
 
 }  // namespace

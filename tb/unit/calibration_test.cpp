@@ -1,6 +1,7 @@
 // sw/fovea/config/calibration.h: OpenCV's files, and the keys that they set.
 #include "sw/fovea/config/calibration.h"
 
+#include "tb/own_diagnostics.h"
 #include "tb/unit/support.h"
 
 namespace fovea::app {
@@ -122,14 +123,13 @@ struct LensParams : ParamGroup {
 
 class ApplyTest : public CalibrationTest {
  protected:
+  OwnDiagnostics diagnostics;
   ApplyTest() {
     params.add(camera);
     params.add(lens);
-    Diagnostics::instance().clear();
     dir.write("one.yaml", std::string(kMatrix) + "D: [0, 0, 0, 0]\nimage_size: [800, 600]\n");
     dir.write("two.yaml", "K: [700, 0, 1, 0, 2, 3, 0, 0, 1]\nD: [0, 0, 0, 0]\nresolution: [64, 32]\n");
   }
-  ~ApplyTest() override { Diagnostics::instance().clear(); }
   void apply(const std::string& text, const std::vector<std::string>& sets = {}) {
     experiment.load(dir.write("e.yaml", text));
     for (const auto& s : sets) experiment.override_with(s);
@@ -149,7 +149,7 @@ TEST_F(ApplyTest, OneFileSetsCameraAndFirmware) {
   EXPECT_EQ(lens.kb_width(), 800);
   EXPECT_EQ(lens.kb_height(), 600);
   EXPECT_THAT(experiment.origin("lens.kb").text(), testing::EndsWith("one.yaml"));
-  EXPECT_TRUE(Diagnostics::instance().counts().empty());
+  EXPECT_TRUE(diagnostics.counts().empty());
 }
 
 TEST_F(ApplyTest, TheFirmwareMayHaveItsOwn) {
@@ -175,7 +175,7 @@ TEST_F(ApplyTest, TheCommandLineWins) {
 TEST_F(ApplyTest, NumbersBesideAFileAreWarnedOf) {
   apply("camera.calibration: one.yaml\ncamera.kb: [5, 5, 5, 5, 0, 0, 0, 0]\n");
   EXPECT_EQ(camera.kb()[0], 300);
-  const auto counts = Diagnostics::instance().counts();
+  const auto counts = diagnostics.counts();
   ASSERT_EQ(counts.size(), 1u);
   EXPECT_THAT(counts.begin()->first.second, HasSubstr("'camera.kb' is set"));
 }

@@ -3,6 +3,7 @@
 
 #include <sys/stat.h>
 
+#include "tb/own_diagnostics.h"
 #include "tb/unit/support.h"
 
 namespace fovea::app {
@@ -60,15 +61,11 @@ class ExperimentTest : public testing::Test {
 
 class NoEffectTest : public ExperimentTest {
  protected:
-  NoEffectTest() { Diagnostics::instance().clear(); }
-  ~NoEffectTest() override {
-    Diagnostics::instance().set_strict(false);
-    Diagnostics::instance().clear();
-  }
+  OwnDiagnostics diagnostics;
   std::vector<std::string> warned() {
     warn_without_effect(params, experiment);
     std::vector<std::string> out;
-    for (const auto& [what, count] : Diagnostics::instance().counts()) {
+    for (const auto& [what, count] : diagnostics.counts()) {
       EXPECT_EQ(what.first, Diagnostics::Kind::kConfiguration);
       out.push_back(what.second);
     }
@@ -91,7 +88,7 @@ TEST_F(NoEffectTest, OnTheCommandLineIsAWarningAlsoBesideADefault) {
 
 TEST_F(NoEffectTest, WithStrictIsAnError) {
   experiment.load(dir.write("a.yaml", "lens.fov: 90deg\n"));
-  Diagnostics::instance().set_strict(true);
+  diagnostics.set_strict(true);
   EXPECT_THAT(user_error([&] { warn_without_effect(params, experiment); }),
               HasSubstr("'lens.fov' is set"));
 }

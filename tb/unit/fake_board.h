@@ -38,7 +38,7 @@ class FakeBoard : public app::Machine {
           "p");
     if (params_.mode.is("stopped_decoding")) throw app::Stopped();
     if (params_.mode.is("user_error")) throw UserError("footage 'x' is missing");
-    if (params_.mode.is("not_modelled")) Diagnostics::instance().not_modelled("field X of Y");
+    if (params_.mode.is("not_modelled")) DiagnosticsRef::current().not_modelled("field X of Y");
     app::Result result;
     tools.finish(cpu::Counts{}, result, result.lost);
     std::vector<app::FrameRow> late;

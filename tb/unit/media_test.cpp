@@ -10,6 +10,7 @@
 #include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/files/ffmpeg.h"
 #include "sw/fovea/files/png.h"
+#include "tb/own_diagnostics.h"
 #include "tb/unit/png_file.h"
 #include "tb/unit/support.h"
 
@@ -92,11 +93,10 @@ TEST(PngTest, AnOrientationThatIsNotFollowedIsSaid) {
     std::string bytes = as_text(encode_png(pattern(4, 3), 1));
     bytes.insert(bytes.find("IDAT") - 4, big(static_cast<std::uint32_t>(exif.size())) + "eXIf" + exif +
                                              big(crc_of("eXIf" + exif)));
-    Diagnostics::instance().clear();
+    const OwnDiagnostics diagnostics;
     EXPECT_EQ(read_png(dir.write("p.png", bytes)).rgb, pattern(4, 3).rgb);
     std::string out;
-    for (const auto& [what, count] : Diagnostics::instance().counts()) out += what.second;
-    Diagnostics::instance().clear();
+    for (const auto& [what, count] : diagnostics.counts()) out += what.second;
     return out;
   };
   // TIFF 6.0: byte order, 42, place of the directory; entries of tag, type, count and value.

@@ -71,8 +71,7 @@ TEST(StatsJsonTest, AMeanOfNothingIsNullAndStillJson) {
 }
 
 TEST(StatsJsonTest, ListsWarningsWithTheirKindsAndCounts) {
-  auto& d = Diagnostics::instance();
-  d.clear();
+  Diagnostics d;
   d.guest("odd write");
   d.guest("odd write");
   d.not_modelled("field X");

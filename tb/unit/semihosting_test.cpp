@@ -12,6 +12,7 @@
 #include <random>
 
 #include "model/common/check.h"
+#include "tb/own_diagnostics.h"
 
 namespace fovea::app {
 namespace {
@@ -62,6 +63,7 @@ class SemihostingTest : public testing::Test {
  protected:
   static constexpr std::uint32_t kBlock = 0x100, kText = 0x200, kText2 = 0x300, kData = 0x1000;
   fs::path top, root;
+  OwnDiagnostics diagnostics;
   Machine machine;
   Console console;
   std::unique_ptr<Semihosting> semihosting;
@@ -325,13 +327,11 @@ TEST_F(SemihostingTest, FeaturesSayExtendedExit) {
 }
 
 TEST_F(SemihostingTest, SystemIsRefusedAndNoted) {
-  Diagnostics::instance().clear();
   const std::uint32_t n = put(kText, "true");
   EXPECT_EQ(call(0x12, {kText, n}), kFailed);
-  EXPECT_EQ(Diagnostics::instance().counts().size(), 1u);
+  EXPECT_EQ(diagnostics.counts().size(), 1u);
   EXPECT_EQ(call_with(0x77, 0), kFailed);
-  EXPECT_EQ(Diagnostics::instance().counts().size(), 2u);
-  Diagnostics::instance().clear();
+  EXPECT_EQ(diagnostics.counts().size(), 2u);
 }
 
 TEST_F(SemihostingTest, BadPointersAndHandlesAreErrorsOfTheCall) {
@@ -353,7 +353,6 @@ TEST_F(SemihostingTest, BadPointersAndHandlesAreErrorsOfTheCall) {
 /// Names put together from everything that could lead out of the folder, in every call that takes
 /// one, and calls of random numbers and blocks: nothing outside changes, and all of them return.
 TEST_F(SemihostingTest, NoNameAndNoCallReachesOutside) {
-  Diagnostics::instance().clear();
   fs::create_symlink("../secret", root / "link");
   fs::create_directory_symlink("..", root / "up");
   ::mkfifo((root / "pipe").c_str(), 0600);
@@ -400,7 +399,6 @@ TEST_F(SemihostingTest, NoNameAndNoCallReachesOutside) {
   for (const auto& entry : fs::directory_iterator(top)) there.push_back(entry.path().filename());
   std::sort(there.begin(), there.end());
   EXPECT_EQ(there, (std::vector<std::string>{"root", "secret"}));
-  Diagnostics::instance().clear();
 }
 
 TEST_F(SemihostingTest, TemporaryNamesDifferAndFit) {

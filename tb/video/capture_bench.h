@@ -8,6 +8,7 @@
 #include "model/video/camera_signal.h"
 #include "model/video/isif.h"
 #include "model/video/vpss_top.h"
+#include "tb/own_diagnostics.h"
 #include "tb/video/bench.h"
 
 namespace fovea::video {
@@ -79,6 +80,7 @@ class CaptureWire : public sc_core::sc_module, private Bt656Renderer {
 };
 
 struct CaptureBench {
+  OwnDiagnostics diagnostics;
   VpssParams params;
   sc_core::sc_signal<bool> psc{"psc", true}, no_venc{"no_venc"};
   sc_core::sc_signal<bool> isif_gate{"isif_gate", true}, vpbe_gate{"vpbe_gate"},

@@ -11,7 +11,7 @@ TEST_F(CaptureTest, SettingsThatAreNotModelledAreNamed) {
     std::uint32_t offset, word, usual;
     const char* text;
   };
-  auto& notes = Diagnostics::instance();
+  auto& notes = b.diagnostics;
   for (const Setting& s : {Setting{REC656IF, 0, 3, "ISIF without BT.656 embedded syncs"},
                            Setting{MODESET, 1u << 12 | 1u << 7 | 1u << 2, 2u << 12 | 1u << 7 | 1u << 2,
                                    "ISIF input other than 8-bit YC"},
@@ -199,7 +199,7 @@ TEST_F(CaptureTest, EdmaEventsFollowTheSourceThatEvtselNames) {
 
 TEST_F(CaptureTest, SilentSourcesOfEdmaEventsAreNamed) {
   VpssEvents events(b);
-  auto& notes = Diagnostics::instance();
+  auto& notes = b.diagnostics;
   notes.clear();
   b.top_regs.write(0x1C, 0x1F021500);  // 31, 2, 21, 0
   EXPECT_TRUE(notes.counts().empty());
@@ -291,7 +291,7 @@ TEST_F(CaptureTest, FieldsOfDifferentFramesAreNoFrame) {
 }
 
 TEST_F(CaptureTest, SettingsWithoutEffectAreWarnedOfByName) {
-  Diagnostics& d = Diagnostics::instance();
+  Diagnostics& d = b.diagnostics;
   d.clear();
   const auto names = [&d] {
     std::vector<std::string> out;

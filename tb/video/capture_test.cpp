@@ -148,7 +148,7 @@ TEST_F(CaptureTest, ProgressiveFieldsAreFrames) {
 }
 
 TEST_F(CaptureTest, WholeLineIsAWindowAndOneSampleMoreIsCut) {
-  Diagnostics& d = Diagnostics::instance();
+  Diagnostics& d = b.diagnostics;
   d.clear();
   b.regs.write(HSIZE, kActiveBytes / 32);
   b.regs.write(LNH, kActiveBytes - 1);

@@ -9,6 +9,7 @@
 #include "model/common/sc_ports.h"
 #include "model/video/tvp5146.h"
 #include "model/video/tvp5146_settings.h"
+#include "tb/own_diagnostics.h"
 
 namespace fovea::video {
 namespace {
@@ -74,6 +75,7 @@ class Black : public PictureSource {
 
 /// A decoder on the I2C bus, before the first instant.
 struct Decoder {
+  OwnDiagnostics diagnostics;
   Tvp5146Params params;
   Black picture;
   Tvp5146 decoder{"decoder", params, picture};
@@ -93,7 +95,7 @@ Decoder* decoder = nullptr;
 
 std::map<std::string, std::uint64_t> warnings() {
   std::map<std::string, std::uint64_t> out;
-  for (const auto& [kind, count] : Diagnostics::instance().counts()) {
+  for (const auto& [kind, count] : decoder->diagnostics.counts()) {
     EXPECT_EQ(kind.first, Diagnostics::Kind::kNotModelled) << kind.second;
     out[kind.second] = count;
   }
@@ -112,7 +114,7 @@ TEST(DecoderSettings, ResetValuesAreThoseOfTheManual) {
 }
 
 TEST(DecoderSettings, OutputsThatAreEnabledWithTheFormatOfResetAreWarnedOf) {
-  Diagnostics::instance().clear();
+  decoder->diagnostics.clear();
   decoder->write(0x34, 0x10);
   EXPECT_THAT(warnings(), IsEmpty()) << "nothing is sent yet";
   decoder->write(0x34, 0x11);
@@ -122,7 +124,7 @@ TEST(DecoderSettings, OutputsThatAreEnabledWithTheFormatOfResetAreWarnedOf) {
 }
 
 TEST(DecoderSettings, WhatTheFirmwareWritesIsModelled) {
-  Diagnostics::instance().clear();
+  decoder->diagnostics.clear();
   const std::uint8_t sequence[][2] = {{0x34, 0}, {0x02, 2}, {0x00, 5}, {0x33, 0}, {0x03, 0}, {0x34, 0x11},
                                       {0x02, 0}, {0x39, 1}, {0x97, 1}, {0x00, 4}};
   for (const auto& [index, value] : sequence) decoder->write(index, value);
@@ -130,7 +132,7 @@ TEST(DecoderSettings, WhatTheFirmwareWritesIsModelled) {
 }
 
 TEST(DecoderSettings, AWriteOfAnotherFormatIsKeptAndWarnedOfAtEachWrite) {
-  Diagnostics::instance().clear();
+  decoder->diagnostics.clear();
   decoder->write(0x33, 0x41);
   decoder->write(0x33, 0x41);
   EXPECT_EQ(decoder->read(0x33), 0x41u);
@@ -141,10 +143,10 @@ TEST(DecoderSettings, AWriteOfAnotherFormatIsKeptAndWarnedOfAtEachWrite) {
 }
 
 TEST(DecoderSettings, AreAnErrorWithStrict) {
-  Diagnostics::instance().set_strict(true);
+  decoder->diagnostics.set_strict(true);
   EXPECT_THROW(decoder->write(0x09, 0x81), NotModelled);
   EXPECT_NO_THROW(decoder->write(0x09, 0x80));
-  Diagnostics::instance().set_strict(false);
+  decoder->diagnostics.set_strict(false);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "model/video/display_sink.h"
 #include "model/video/osd.h"
 #include "model/video/venc.h"
+#include "tb/own_diagnostics.h"
 #include "tb/video/bench.h"
 #include "tb/video/setting.h"
 
@@ -54,6 +55,7 @@ struct Params : VpssParams {
 };
 
 struct Bench {
+  OwnDiagnostics diagnostics;
   Params params;
   sc_core::sc_signal<bool> on{"on", true}, vpbe_gate{"vpbe_gate", true}, clk_sel{"clk_sel"},
       event{"event"};

@@ -75,11 +75,11 @@ TEST_F(DisplayTest, LateDataSetAFlagThatStaysUntilOneIsWritten) {
   b.memory.latency = 5 * kPsPerMs;
   show(1);
   EXPECT_EQ(b.osd_regs.read(kMiscctl), 0x10u);
-  Diagnostics::instance().clear();
+  b.diagnostics.clear();
   b.osd_regs.write(kMiscctl, kDmang);
-  ASSERT_EQ(Diagnostics::instance().counts().size(), 1u);
-  EXPECT_EQ(Diagnostics::instance().counts().begin()->first.second, "OSD MISCCTL.RGBWIN");
-  Diagnostics::instance().clear();
+  ASSERT_EQ(b.diagnostics.counts().size(), 1u);
+  EXPECT_EQ(b.diagnostics.counts().begin()->first.second, "OSD MISCCTL.RGBWIN");
+  b.diagnostics.clear();
   b.params.miscctl_6.set("dmang");
   b.osd_regs.write(kMiscctl, kDmang);
   b.venc_regs.write(VMOD, 0);

@@ -235,7 +235,7 @@ TEST_F(DisplayTest, OtherStandardIsTakenWhileTheEncoderRuns) {
 }
 
 TEST_F(DisplayTest, SettingsWithoutEffectAreWarnedOfByName) {
-  Diagnostics& d = Diagnostics::instance();
+  Diagnostics& d = b.diagnostics;
   d.clear();
   const auto names = [&d] {
     std::vector<std::string> out;
@@ -294,7 +294,7 @@ TEST_F(DisplayTest, PositionsHaveTheirRegistersWidths) {
     EXPECT_EQ(b.osd_regs.read(offset), 0x7FFu) << offset;
     b.osd_regs.write(offset, 0);
   }
-  Diagnostics::instance().clear();
+  b.diagnostics.clear();
 }
 
 }  // namespace

@@ -88,7 +88,8 @@ class Core : public Background {
  public:
   /// @param tcm the RAM of 32 KB that is visible through both TCM windows (0x0 and 0x10000); its
   ///        size is a power of two. Empty: a core without TCMs
-  Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm);
+  /// @param diagnostics who hears of what the program does wrong or what is not modelled
+  Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm, const DiagnosticsRef& diagnostics);
   Core(const Core&) = delete;
   Core& operator=(const Core&) = delete;
 
@@ -524,6 +525,7 @@ class Core : public Background {
   unsigned cache_op_cycles_, test_clean_cycles_, invalidate_all_cycles_;
   bool shifted_cycle_;  // a shifted register offset costs a clock
   const CpuParams& params_;
+  DiagnosticsRef diagnostics_;
 };
 
 }  // namespace fovea::cpu

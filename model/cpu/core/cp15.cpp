@@ -101,8 +101,7 @@ void Core::settings_changed() {
 void Core::set_ram_region(bool data, std::uint32_t value) {
   if (ram_.empty()) return;
   std::uint32_t& region = data ? system_.dtcm_region : system_.itcm_region;
-  if ((value & 0xFFFFF000u) != (region & 0xFFFFF000u))
-    Diagnostics::instance().not_modelled("moving a TCM region by CP15 c9,c1");
+  if ((value & 0xFFFFF000u) != (region & 0xFFFFF000u)) diagnostics_.not_modelled("moving a TCM region by CP15 c9,c1");
   region = (region & ~1u) | (value & 1u);
   const std::uint32_t bytes = (value & 1u) ? ram_.size() : 0;
   data ? ram_.set_dtcm(bytes) : ram_.set_itcm(bytes);

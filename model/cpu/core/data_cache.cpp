@@ -50,7 +50,7 @@ int DataCache::fill_line(std::uint32_t mva, std::uint32_t pa, bool write_back_pa
   Cache::Line& l = lines_.line(index);
   if (!good) {  // linefills cannot abort on this core: the line is simply not kept
     lines_.invalidate(index);
-    Diagnostics::instance().guest("bus error on a D-cache line fill");
+    diagnostics_.guest("bus error on a D-cache line fill");
     std::memset(lines_.data(index), 0, 32);
     return static_cast<int>(index);
   }

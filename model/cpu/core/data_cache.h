@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "model/common/check.h"
 #include "model/common/observers.h"
 #include "model/cpu/core/cache.h"
 #include "model/cpu/core/data_bus.h"
@@ -27,9 +28,9 @@ class DataCache {
   static constexpr std::uint32_t kNoHint = 4;  // no aligned address has this bit
   static constexpr unsigned kHints = 256, kReadSpan = 32, kWriteSpan = 16;
 
-  DataCache(std::uint64_t bytes, StallLedger& ledger, DataBus& bus,
-            const SystemRegisters& registers)
-      : ledger_(ledger), bus_(bus), registers_(registers), lines_(bytes) {}
+  DataCache(std::uint64_t bytes, StallLedger& ledger, DataBus& bus, const SystemRegisters& registers,
+            const DiagnosticsRef& diagnostics)
+      : ledger_(ledger), bus_(bus), registers_(registers), lines_(bytes), diagnostics_(diagnostics) {}
   DataCache(const DataCache&) = delete;
   DataCache& operator=(const DataCache&) = delete;
 
@@ -152,6 +153,7 @@ class DataCache {
   /// Where hints of internal RAM were put; others may have taken their places since.
   std::array<Hint*, kRamHints> ram_hints_{};
   unsigned ram_hints_used_ = 0;
+  DiagnosticsRef diagnostics_;
 };
 
 }  // namespace fovea::cpu

@@ -7,12 +7,12 @@
 
 namespace fovea::cpu {
 
-Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
+Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm, const DiagnosticsRef& diagnostics)
     : interface_(port, static_cast<unsigned>(params.ahb_ratio())),
       bus_(interface_, ledger_, static_cast<unsigned>(params.fill_latency())),
       ram_(params, interface_, ledger_, tcm),
       mmu_(ledger_, bus_, ram_, system_, static_cast<unsigned>(params.walk_cycles())),
-      data_(params.dcache.size(), ledger_, bus_, system_),
+      data_(params.dcache.size(), ledger_, bus_, system_, diagnostics),
       fetch_({.cache_bytes = params.icache.size(),
               .ram_bytes = tcm.size(),
               .fill_latency = static_cast<unsigned>(params.fill_latency()),
@@ -22,7 +22,8 @@ Core::Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm)
       test_clean_cycles_(static_cast<unsigned>(params.test_clean_cycles())),
       invalidate_all_cycles_(static_cast<unsigned>(params.invalidate_all_cycles())),
       shifted_cycle_(params.shifted_address_cycle()),
-      params_(params) {}
+      params_(params),
+      diagnostics_(diagnostics) {}
 
 void Core::set_clock(Frequency f, Picoseconds at) {
   // Bus activity that is under way keeps its end time; convert it into clocks of the new frequency.
@@ -179,7 +180,7 @@ void Core::unpredictable(const char* what) {
   std::string& text = unpredictable_texts_[what];
   if (text.empty())
     text = std::string("UNPREDICTABLE: ") + what + ", first at " + address_text(regs_.pc);
-  Diagnostics::instance().guest(text);
+  diagnostics_.guest(text);
 }
 
 }  // namespace fovea::cpu

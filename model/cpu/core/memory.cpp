@@ -212,7 +212,7 @@ const Instruction* Core::fetch_slow() {
     return fetch_from_ram(pa, target);
   }
   if (ram_.in_dtcm(pa)) [[unlikely]]
-    Diagnostics::instance().guest(
+    diagnostics_.guest(
         "instruction fetch from the data window of internal RAM (0x10000), which serves data only: "
         "it goes to the bus, where nothing answers; the same RAM holds code at 0x0");
   // With the MMU off only the I-cache's enable bit decides; with it on, the C bit of the page too.

@@ -22,7 +22,7 @@ DdrConfig idealised(DdrConfig c, const DdrParams& params) {
   return c;
 }
 
-DdrController::DdrController(const DdrParams& params, BackingStore& store)
+DdrController::DdrController(const DdrParams& params, BackingStore& store, const DiagnosticsRef& diagnostics)
     : store_(store),
       size_(store.size()),
       fifo_entries_(params.command_fifo()),
@@ -30,13 +30,12 @@ DdrController::DdrController(const DdrParams& params, BackingStore& store)
       request_latency_(static_cast<unsigned>(params.request_latency())),
       return_latency_(static_cast<unsigned>(params.return_latency())),
       retention_(params.retention()),
-      refresh_({static_cast<unsigned>(params.refresh_release()),
-                static_cast<unsigned>(params.refresh_need()),
-                static_cast<unsigned>(params.refresh_must()),
-                static_cast<unsigned>(params.refresh_gap())},
-               stats),
+      refresh_({static_cast<unsigned>(params.refresh_release()), static_cast<unsigned>(params.refresh_need()),
+                static_cast<unsigned>(params.refresh_must()), static_cast<unsigned>(params.refresh_gap())},
+               stats, diagnostics),
       power_(static_cast<unsigned>(params.clock_restart()), stats),
-      scheduler_(scheduler_of(params)) {
+      scheduler_(scheduler_of(params)),
+      diagnostics_(diagnostics) {
   returns_.channel().set_fifo(static_cast<unsigned>(params.read_fifo()));
   with_scheduler([&]<Scheduler S>(S) {
     returns_.set_reorders(S::kReordersReads);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/common/check.h"
 #include "model/common/clock.h"
 #include "model/common/masters.h"
 #include "model/common/mem_request.h"
@@ -33,7 +34,8 @@ namespace fovea::mem {
 /// the command bus, on which one command is issued at a time.
 class DdrController {
  public:
-  DdrController(const DdrParams& params, BackingStore& store);
+  /// @param diagnostics who hears of postponed refreshes and of data that are lost
+  DdrController(const DdrParams& params, BackingStore& store, const DiagnosticsRef& diagnostics);
   DdrController(const DdrController&) = delete;
   DdrController& operator=(const DdrController&) = delete;
 
@@ -312,6 +314,7 @@ class DdrController {
     void* self;
   };
   Observers<Hook> hooks_;
+  DiagnosticsRef diagnostics_;
 };
 
 }  // namespace fovea::mem

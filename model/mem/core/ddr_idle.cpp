@@ -117,7 +117,7 @@ bool DdrController::fall_asleep(std::uint64_t until) {
   mark(self_refresh ? Cmd::kSrx : Cmd::kPdx, at);
   command_free_ = at + (self_refresh ? t.nXSNR : t.nXP);
   if (!self_refresh) return;
-  lose_unrefreshed(config_, ddr_.edge(at) - power_.entered(), retention_, store_);
+  lose_unrefreshed(config_, ddr_.edge(at) - power_.entered(), retention_, store_, diagnostics_);
   device_.put_off_reads(at + t.nXSRD);
   refresh_.restart(at);
   // A mobile part gets a REF before anything else (SPRUH82C 14.2.8). For DDR2 TI's manuals name none, though the part

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "model/common/check.h"
-
 namespace fovea::mem {
 namespace {
 
@@ -13,8 +11,8 @@ constexpr int kLostByte = 0xA5;
 
 }  // namespace
 
-void lose_unrefreshed(const DdrConfig& config, Picoseconds slept, Picoseconds retention,
-                      BackingStore& store) {
+void lose_unrefreshed(const DdrConfig& config, Picoseconds slept, Picoseconds retention, BackingStore& store,
+                      const DiagnosticsRef& diagnostics) {
   if (config.refreshed_log2 == 0 || slept <= retention) return;
   const std::uint64_t page = std::uint64_t{1} << config.page_log2;
   const unsigned banks = config.timing.banks;
@@ -26,8 +24,7 @@ void lose_unrefreshed(const DdrConfig& config, Picoseconds slept, Picoseconds re
     for (std::uint64_t r = b < kept_banks ? kept_rows : 0; r < rows; ++r)
       std::memset(store.at(config.bank_on_top ? (b * rows + r) * page : (r * banks + b) * page),
                   kLostByte, page);
-  Diagnostics::instance().guest(
-      "self-refresh of a part of the SDRAM (SDBCR2.PASR) was so long that the rest lost its data");
+  diagnostics.guest("self-refresh of a part of the SDRAM (SDBCR2.PASR) was so long that the rest lost its data");
 }
 
 }  // namespace fovea::mem

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "model/common/check.h"
-
 namespace fovea::mem {
 namespace {
 
@@ -27,7 +25,7 @@ void RefreshManager::count_expired(std::uint64_t clock) {
     next_expiry_ += interval_;
     stats_.refresh_backlog.note(owed_);
     if (owed_ > kPostponedMost)
-      Diagnostics::instance().guest(
+      diagnostics_.guest(
           "more refreshes of the SDRAM are postponed than the 8 that JESD79-2 allows (most at once: "
           "ddr.refresh_backlog)");
   }

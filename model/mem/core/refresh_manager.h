@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 
+#include "model/common/check.h"
 #include "model/mem/core/ddr_stats.h"
 
 namespace fovea::mem {
@@ -23,7 +24,8 @@ class RefreshManager {
   struct Levels {
     unsigned release, need, must, gap;
   };
-  RefreshManager(const Levels& levels, DdrStats& stats) : levels_(levels), stats_(stats) {}
+  RefreshManager(const Levels& levels, DdrStats& stats, const DiagnosticsRef& diagnostics)
+      : levels_(levels), stats_(stats), diagnostics_(diagnostics) {}
 
   /// Length of an interval in clocks; 0: no refresh. Another length starts to count at `now`.
   void set_interval(unsigned clocks, std::uint64_t now);
@@ -69,6 +71,7 @@ class RefreshManager {
   bool catching_up_ = false;      // the backlog was above `must` and is not down to `release` yet
   bool urgent_ = false;
   Urgency urgency_ = Urgency::kMay;  // before next_expiry_
+  DiagnosticsRef diagnostics_;
 };
 
 }  // namespace fovea::mem

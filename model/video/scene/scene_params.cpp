@@ -108,10 +108,9 @@ void SceneParams::check_calibration(unsigned width, unsigned height) const {
   if (kb_width() > 0 && kb_height() > 0) {
     // The same picture in another size has the same aspect ratio, up to one pixel of rounding.
     if (std::abs(width * kb_height() / kb_width() - height) > 1)
-      Diagnostics::instance().configuration(
-          whose + " is of a picture of " + std::to_string(std::lround(kb_width())) + "x" +
-          std::to_string(std::lround(kb_height())) + ", so it does not belong to " + picture +
-          ", which has another shape");
+      DiagnosticsRef::current().configuration(whose + " is of a picture of " + std::to_string(std::lround(kb_width())) +
+                                              "x" + std::to_string(std::lround(kb_height())) +
+                                              ", so it does not belong to " + picture + ", which has another shape");
     return;
   }
   const LensModel lens_of_kb = lens_model(width, height);
@@ -119,10 +118,10 @@ void SceneParams::check_calibration(unsigned width, unsigned height) const {
     return std::abs(centre - (side - 1) / 2.0) > side / 6.0;
   };
   if (off(lens_of_kb.cx(), width) || off(lens_of_kb.cy(), height))
-    Diagnostics::instance().configuration(
-        whose + " has its optical centre at " + std::to_string(std::lround(lens_of_kb.cx())) +
-        ", " + std::to_string(std::lround(lens_of_kb.cy())) + ", outside the middle third of " +
-        picture + ", so it hardly belongs to this picture");
+    DiagnosticsRef::current().configuration(
+        whose + " has its optical centre at " + std::to_string(std::lround(lens_of_kb.cx())) + ", " +
+        std::to_string(std::lround(lens_of_kb.cy())) + ", outside the middle third of " + picture +
+        ", so it hardly belongs to this picture");
 }
 
 std::unique_ptr<StampedSource> make_picture_source(const SceneParams& params,

@@ -47,7 +47,7 @@ std::string_view replaced_by(const board::BoardParams& params) {
 void check_kernel(const board::BoardParams& params) {
   if (!params.own_program()) return;
   const EnumParam &kernel = params.firmware.kernel, &view = params.firmware.view, &engine = params.soc.engine.kind;
-  auto& diagnostics = Diagnostics::instance();
+  const DiagnosticsRef diagnostics = DiagnosticsRef::current();
   const std::string_view instead = replaced_by(params);
   const bool computes = needs_engine(params) && instead.empty();
   if (!instead.empty() && needs_engine(params) && !params.soc.engine.present())
@@ -78,8 +78,8 @@ std::string kernel_that_ran(const board::BoardParams& params, std::string_view u
   const EnumParam& kernel = params.firmware.kernel;
   if (!ran.empty() && !kernel.is("fastest") && replaced_by(params).empty() &&
       std::ranges::find(ran, kernel()) == ran.end())
-    Diagnostics::instance().configuration(fmt::format("{}={} was asked for, and {} ran; uart.log has the reason",
-                                                      kernel.key(), kernel(), fmt::join(ran, ", ")));
+    DiagnosticsRef::current().configuration(fmt::format("{}={} was asked for, and {} ran; uart.log has the reason",
+                                                        kernel.key(), kernel(), fmt::join(ran, ", ")));
   return fmt::format("{}", fmt::join(ran, ", "));
 }
 

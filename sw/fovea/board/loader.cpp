@@ -249,10 +249,10 @@ void check_digital(const board::BoardParams& params) {
 void warn_of_unwatched_fault(const board::BoardParams& params) {
   const auto& kind = params.fault.kind;
   if (kind.is("none")) return;
-  Diagnostics::instance().configuration("key '" + kind.key() + "': '" + kind() + "' is not looked for by " +
-                                        params.firmware.program.key() +
-                                        " = one_camera, which shows what comes and says nothing; the program that "
-                                        "does: cameras, or auto");
+  DiagnosticsRef::current().configuration("key '" + kind.key() + "': '" + kind() + "' is not looked for by " +
+                                          params.firmware.program.key() +
+                                          " = one_camera, which shows what comes and says nothing; the program that "
+                                          "does: cameras, or auto");
 }
 
 void check_cameras(const board::BoardParams& params) {

@@ -36,14 +36,13 @@ void check_same_lens(const board::BoardParams& params, const board::CameraSetup&
       !apart(firmware.cx(), camera.cx(), params.raster_width()) &&
       !apart(firmware.cy(), camera.cy(), params.raster_height()))
     return;
-  Diagnostics::instance().configuration(fmt::format(
-      "{} is set and {} is not, and they describe different lenses (optical centre {:.1f}, {:.1f} "
-      "in the camera and {:.1f}, {:.1f} in the firmware, in pixels of the {}x{} raster); "
-      "{} sets both",
-      of_camera.user_set() ? of_camera.key() : of_firmware.key(),
-      of_camera.user_set() ? of_firmware.key() : of_camera.key(), camera.cx(), camera.cy(),
-      firmware.cx(), firmware.cy(), params.raster_width(), params.raster_height(),
-      setup.scene->calibration.key()));
+  DiagnosticsRef::current().configuration(
+      fmt::format("{} is set and {} is not, and they describe different lenses (optical centre {:.1f}, {:.1f} "
+                  "in the camera and {:.1f}, {:.1f} in the firmware, in pixels of the {}x{} raster); "
+                  "{} sets both",
+                  of_camera.user_set() ? of_camera.key() : of_firmware.key(),
+                  of_camera.user_set() ? of_firmware.key() : of_camera.key(), camera.cx(), camera.cy(), firmware.cx(),
+                  firmware.cy(), params.raster_width(), params.raster_height(), setup.scene->calibration.key()));
 }
 
 /// Warns if the firmware corrects another kind of lens than the camera has.
@@ -51,7 +50,7 @@ void check_same_mapping(const board::CameraSetup& setup) {
   const video::SceneParams& scene = *setup.scene;
   const board::LensParams& lens = *setup.lens;
   if (!scene.bends() || lens.mapping.is("none")) return;
-  auto& diagnostics = Diagnostics::instance();
+  const DiagnosticsRef diagnostics = DiagnosticsRef::current();
   if (scene.lens() != lens.mapping()) {
     diagnostics.configuration(fmt::format("{} = {}, but the firmware corrects {} = {}: the picture stays distorted",
                                           scene.lens.key(), scene.lens(), lens.mapping.key(), lens.mapping()));
@@ -111,7 +110,7 @@ void show_region(lens_view_t& view, const board::BoardParams& params, const boar
   if (view.mapping == LENS_NONE || params.firmware.view.is("birds_eye")) {
     // Of the keys of all cameras their declaration says so.
     if (lens.prefix() != params.lens.prefix())
-      Diagnostics::instance().configuration(fmt::format(
+      DiagnosticsRef::current().configuration(fmt::format(
           "{} has no effect: it needs a lens.mapping other than none and a firmware.view other than birds_eye",
           lens.roi.key()));
     return;

@@ -162,9 +162,8 @@ void warn_of_fast_memory(const ParamSet& params, const Experiment& experiment) {
   for (const auto* p : params.all())
     if (experiment.rank(p->key()) >= 0 && p->key() != "ddr.part" &&
         (p->key().starts_with("bus.") || p->key().starts_with("ddr.")))
-      Diagnostics::instance().configuration(fmt::format(
-          "'{}' is set but has no effect with --fast-memory, which has no bus and no SDRAM",
-          p->key()));
+      DiagnosticsRef::current().configuration(
+          fmt::format("'{}' is set but has no effect with --fast-memory, which has no bus and no SDRAM", p->key()));
 }
 
 /// What is said after a program has ended.
@@ -186,7 +185,7 @@ void write_results(const Result& result, const std::vector<std::string>& args, R
             {.stats = result.stats,
              .host = result.host,
              .complete = complete,
-             .warnings = collect_warnings(Diagnostics::instance())},
+             .warnings = collect_warnings(DiagnosticsRef::current())},
             files, args);
   say_note(dir.commit(complete), context);
 }

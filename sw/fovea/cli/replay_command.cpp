@@ -207,9 +207,10 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
   tools.close_window();
   tools.finish(cpu::Counts{}, output, lost);
   if (!options.sets.empty() && path.waited_in_ram())
-    Diagnostics::instance().configuration(fmt::format(
+    DiagnosticsRef::current().configuration(fmt::format(
         "bursts of the EDMA waited {} core clocks in internal RAM for the core: as in the recorded run, which a run "
-        "with these settings need not do; its figures may differ (replay.ram_waits)", path.waited_in_ram()));
+        "with these settings need not do; its figures may differ (replay.ram_waits)",
+        path.waited_in_ram()));
   const double wall = std::chrono::duration<double>(Wall::now() - started).count();
 
   std::vector<StatRow> stats = path.stats();
@@ -230,7 +231,7 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
             {.stats = stats,
              .host = host,
              .complete = complete,
-             .warnings = collect_warnings(Diagnostics::instance(), true)},
+             .warnings = collect_warnings(DiagnosticsRef::current(), true)},
             files, args);
   say_note(dir.commit(complete), context);
   context.out << replay_words(stats, host, slowest);

@@ -184,7 +184,7 @@ std::vector<StatRow> write_results(RunDir& dir, Result& result, const ProgressMe
                   .host = result.host,
                   .complete = complete,
                   .words = {result.ended_by, result.kernel},
-                  .warnings = collect_warnings(Diagnostics::instance())};
+                  .warnings = collect_warnings(DiagnosticsRef::current())};
   meter.add_host_rows(run.host);
   std::vector<ResultFile> files = {{"stalls.csv", stalls_csv(result.stalls)},
                                    {"latency.csv", latency_csv(result.latency)},

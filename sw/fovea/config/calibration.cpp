@@ -144,9 +144,8 @@ void apply_calibrations(const ParamSet& params, Experiment& experiment, const st
     const Calibration c = read_calibration(file);
     if (experiment.rank(group + ".kb") > rank) return;
     if (experiment.rank(group + ".kb") == rank)
-      Diagnostics::instance().configuration(
-          fmt::format("'{0}.kb' is set ({1}) but has no effect with {2} = {3}", group,
-                      experiment.origin(group + ".kb").text(), key, file));
+      DiagnosticsRef::current().configuration(fmt::format("'{0}.kb' is set ({1}) but has no effect with {2} = {3}",
+                                                          group, experiment.origin(group + ".kb").text(), key, file));
     if (!c.width && group == lens_group && experiment.rank(lens_group + ".kb_width") < 0)
       throw UserError(fmt::format("calibration '{0}' does not say the size of its picture; set "
                                   "{1}.kb_width and {1}.kb_height",

@@ -223,9 +223,9 @@ void warn_without_effect(const ParamSet& params, const Experiment& experiment) {
         later |= experiment.rank(decider->key()) > rank;
       }
       if (!later)
-        Diagnostics::instance().configuration(
-            fmt::format("'{}' is set ({}) but has no effect with {}: it needs {}", p->key(),
-                        experiment.origin(p->key()).text(), because, effect.condition));
+        DiagnosticsRef::current().configuration(fmt::format("'{}' is set ({}) but has no effect with {}: it needs {}",
+                                                            p->key(), experiment.origin(p->key()).text(), because,
+                                                            effect.condition));
       break;
     }
   }

@@ -122,7 +122,7 @@ std::uint32_t Semihosting::operate(SemihostingTarget& t, std::uint32_t operation
     case kClock: return static_cast<std::uint32_t>(t.now() / (kPsPerSecond / 100));
     case kTime: return static_cast<std::uint32_t>(t.now() / kPsPerSecond);
     case kSystem:
-      Diagnostics::instance().guest("semihosting: SYS_SYSTEM is refused");
+      diagnostics_.guest("semihosting: SYS_SYSTEM is refused");
       return failed(EACCES);
     case kErrno: return static_cast<std::uint32_t>(errno_);
     case kGetCmdLine: return command_line(t, parameter, a);
@@ -136,8 +136,7 @@ std::uint32_t Semihosting::operate(SemihostingTarget& t, std::uint32_t operation
     case kElapsed: return elapsed(t, parameter);
     case kTickFreq: return kTicksPerSecond;
     default:
-      Diagnostics::instance().not_modelled(
-          fmt::format("semihosting operation 0x{:x}", operation));
+      diagnostics_.not_modelled(fmt::format("semihosting operation 0x{:x}", operation));
       return failed(ENOSYS);
   }
 }
@@ -196,7 +195,7 @@ std::uint32_t Semihosting::open(SemihostingTarget& t, const Arguments& a) {
     f.fd = files_.open(name, kModes[mode / 2]);
     if (f.fd == -EACCES && !refused_) {
       refused_ = true;  // one warning is enough; a program may try thousands of names
-      Diagnostics::instance().guest(
+      diagnostics_.guest(
           fmt::format("semihosting: the file '{}' is refused; allowed: names relative to --root, "
                       "without '..' and symbolic links",
                       one_line(name, 100)));
@@ -326,9 +325,8 @@ std::uint32_t Semihosting::command_line(SemihostingTarget& t, std::uint32_t bloc
                                         const Arguments& a) {
   const std::string& line = settings_.command_line;
   if (line.size() + 1 > a[1]) {
-    Diagnostics::instance().guest(
-        fmt::format("semihosting: a command line of {} bytes does not fit into the program's {}",
-                    line.size() + 1, a[1]));
+    diagnostics_.guest(fmt::format("semihosting: a command line of {} bytes does not fit into the program's {}",
+                                   line.size() + 1, a[1]));
     return failed(E2BIG);
   }
   const auto length = static_cast<std::uint32_t>(line.size());

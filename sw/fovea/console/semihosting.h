@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/common/check.h"
 #include "model/common/units.h"
 #include "sw/fovea/console/guest_files.h"
 
@@ -51,6 +52,7 @@ struct SemihostingSettings {
 /// Semihosting calls of one program. Time is simulated: SYS_CLOCK and SYS_ELAPSED count from the
 /// start, and SYS_TIME is 1970-01-01 at the start. The console always claims to be a terminal, so
 /// that the same program makes the same calls wherever its output goes. SYS_SYSTEM is refused.
+/// Warns the Diagnostics that were current when it was constructed.
 class Semihosting {
  public:
   Semihosting(const SemihostingSettings& settings, SemihostingConsole& console);
@@ -103,6 +105,7 @@ class Semihosting {
   SemihostingSettings settings_;
   SemihostingConsole& console_;
   GuestFiles files_;
+  DiagnosticsRef diagnostics_ = DiagnosticsRef::current();
   std::vector<File> open_;  // handle n is element n - 1
   int errno_ = 0;
   std::optional<int> exit_code_;

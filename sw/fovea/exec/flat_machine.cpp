@@ -50,7 +50,7 @@ Result run_flat(const Request& request, const cpu::CpuParams& params, const Exec
   std::array<std::uint8_t, INTERNAL_RAM_BYTES> internal_ram{};
   const auto tcm = std::span(internal_ram).first(map.tcm ? internal_ram.size() : 0);
   FlatMemoryPort port(map.ram_base, map.ram_size);
-  cpu::Core core(params, port, tcm);
+  cpu::Core core(params, port, tcm, DiagnosticsRef::current());
   ExecSession session(core, port, request, map);
   session.load(port.ram(), tcm);
   session.attach_tools({.params = request.params});

@@ -108,9 +108,9 @@ RgbImage read_png(const std::filesystem::path& file) {
   check(spng_decode_chunks(context.get()));
   if (spng_exif exif{}; spng_get_exif(context.get(), &exif) == SPNG_OK)
     if (const unsigned turned = orientation_of({exif.data, exif.length}); turned > 1 && turned <= 8)
-      Diagnostics::instance().configuration(fmt::format(
-          "picture '{}' is taken as it is stored: its EXIF orientation, {}, is not followed", one_line(file.string()),
-          turned));
+      DiagnosticsRef::current().configuration(
+          fmt::format("picture '{}' is taken as it is stored: its EXIF orientation, {}, is not followed",
+                      one_line(file.string()), turned));
   // The decoder does not require the end marker, but a file that is truncated after the pixels is
   // damaged.
   if (bytes.find(kLastChunk) == std::string::npos) fail("the PNG file is cut short");

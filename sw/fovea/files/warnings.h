@@ -28,24 +28,23 @@ inline std::string warning_text(Diagnostics::Kind kind, const std::string& what)
   return (kind == Diagnostics::Kind::kNotModelled ? "not modelled: " : "") + what;
 }
 
-/// Counts the warnings of one command and shows each once.
+/// The warnings of one command: counts them and shows each once. As long as it lives, its Diagnostics are the
+/// current ones of the thread.
 class WarningScope {
  public:
   WarningScope(std::ostream& err, bool strict, bool replay = false) {
-    auto& d = Diagnostics::instance();
-    d.clear();
-    d.set_strict(strict);
-    d.set_sink([&err, replay](Diagnostics::Kind kind, const std::string& what) {
+    diagnostics_.set_strict(strict);
+    diagnostics_.set_sink([&err, replay](Diagnostics::Kind kind, const std::string& what) {
       err << "fovea: warning (" << warning_kind(kind, replay)
           << "): " << one_line(warning_text(kind, what)) << "\n";
     });
   }
-  ~WarningScope() {
-    Diagnostics::instance().set_sink({});
-    Diagnostics::instance().set_strict(false);
-  }
   WarningScope(const WarningScope&) = delete;
   WarningScope& operator=(const WarningScope&) = delete;
+
+ private:
+  Diagnostics diagnostics_;
+  DiagnosticsScope scope_{diagnostics_};
 };
 
 }  // namespace fovea::app

@@ -40,7 +40,7 @@ void BusTraceRun::open() {
 void BusTraceRun::close() {
   const trace::BusTap& tap = board_.dm365.tap;
   if (!(core_ == tap.core() && scr_ == tap.scr() && ddr_ == tap.ddr()))
-    Diagnostics::instance().not_modelled("a clock that changes inside a bus trace");
+    board_.dm365.diagnostics().not_modelled("a clock that changes inside a bus trace");
   recorder_->close(kernel_time());
   closed_ = true;
 }

@@ -63,8 +63,8 @@ std::string hazard_text(const cpu::Hazard& h, const Symbols& symbols) {
 
 HazardReport::HazardReport(cpu::Core& core, memsys::MemorySystem& memory, const Symbols& symbols)
     : memory_(memory), checker_(core) {
-  checker_.on_place = [&symbols](const cpu::Hazard& h) {
-    Diagnostics::instance().guest(hazard_text(h, symbols));
+  checker_.on_place = [&symbols, diagnostics = DiagnosticsRef::current()](const cpu::Hazard& h) {
+    diagnostics.guest(hazard_text(h, symbols));
   };
   arrivals_ = memory_.observe_arrivals(checker_);
   checker_.follow_moves();

@@ -14,7 +14,8 @@ namespace fovea::app {
 /// The sentence about a hazard, complete in itself; times are since power-up.
 std::string hazard_text(const cpu::Hazard& hazard, const Symbols& symbols);
 
-/// Checks from its construction to its end, and warns about each place once.
+/// Checks from its construction to its end, and warns about each place once: the Diagnostics that were
+/// current when it was constructed.
 class HazardReport {
  public:
   /// All three outlive it.

@@ -32,9 +32,9 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
       slaves_(info.edma),
       start_(info.start),
       last_(info.start),
-      memory_(params.crossbar, params.ddr, {.ram_size = INTERNAL_RAM_BYTES}, *this,
+      memory_(params.crossbar, params.ddr, {.ram_size = INTERNAL_RAM_BYTES}, *this, DiagnosticsRef::current(),
               memory_only ? memsys::Route::kBypass : memsys::Route::kCrossbar),
-      check_(params.ddr, memory_.controller()) {
+      check_(params.ddr, memory_.controller(), DiagnosticsRef::current()) {
   set_up_memory(params);
   set_up_streams();
   set_up_masters();

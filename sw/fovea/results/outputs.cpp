@@ -156,7 +156,7 @@ std::string config_json(const ParamSet& params, const Experiment& experiment,
   return file_json(out, {"sha256", "params"});
 }
 
-std::vector<Warning> collect_warnings(const Diagnostics& diagnostics, bool replay) {
+std::vector<Warning> collect_warnings(const DiagnosticsRef& diagnostics, bool replay) {
   std::vector<Warning> out;
   for (const auto& [key, count] : diagnostics.counts())
     out.push_back(

@@ -76,7 +76,7 @@ std::string config_json(const ParamSet& params, const Experiment& experiment,
                         const Provenance& provenance);
 
 using results::Warning;
-std::vector<Warning> collect_warnings(const Diagnostics& diagnostics, bool replay = false);
+std::vector<Warning> collect_warnings(const DiagnosticsRef& diagnostics, bool replay = false);
 
 /// What a run says of itself in words; empty: nothing.
 struct RunWords {
