@@ -1,6 +1,6 @@
 /* The remap in tiles that the EDMA brings into internal RAM, and of which it takes a part of the
  * results away: README.md, "The staged remap". */
-#include "../app/pipeline.h"
+#include "../app/fail.h"
 #include "../drivers/cp15.h"
 #include "../drivers/edma.h"
 #include "../mmio.h"
