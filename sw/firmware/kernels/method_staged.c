@@ -232,4 +232,4 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   if (staged->tiles.black != 0) remap_black(out, staged->black);
 }
 
-const remap_method_t method_staged = {"staged", prepare, run};
+const remap_method_t method_KERNEL_STAGED = {"staged", prepare, run};
