@@ -41,13 +41,14 @@ enum lens_mapping { PARAM_MAPPINGS(PARAM_CONSTANT) };
 enum param_pair_method { PARAM_PAIR_METHODS(PARAM_CONSTANT) };
 
 /* Who moves a kernel's pixels; of `fastest`, which is none itself, the kernel in its place says that. */
-enum param_mover { PARAM_BY_CORE, PARAM_BY_EDMA, PARAM_BY_ENGINE };
+enum param_mover { PARAM_BY_CORE, PARAM_BY_EDMA, PARAM_BY_ENGINE, PARAM_BY_ANOTHER };
 
 /* How a frame is remapped (sw/firmware/README.md): X(constant, code, word, who moves the pixels, the kernel that the
  * firmware takes in its place where lens or chip do not allow it (of several sources: `strips`), whether it has a form
  * for several sources). All but three give the same picture: `copy` does not correct; `engine_grid` and
  * `engine_radial` follow the lens, but not its table. Those after `ldm` read a form of the look-up table that the
- * firmware derives from it at the start. The last one of a chain fits every lens and refers to itself. */
+ * firmware derives from it at the start. The last one of a chain fits every lens and refers to itself. A new row comes
+ * last, with the next code (model/howto/add-a-kernel.md). */
 #define PARAM_KERNELS(X)                                                          \
   X(KERNEL_PLAIN, 0, "plain", PARAM_BY_CORE, KERNEL_PLAIN, 1)                     \
   X(KERNEL_LDM, 1, "ldm", PARAM_BY_CORE, KERNEL_LDM, 1)                           \
@@ -59,13 +60,12 @@ enum param_mover { PARAM_BY_CORE, PARAM_BY_EDMA, PARAM_BY_ENGINE };
   X(KERNEL_GATHER, 7, "gather", PARAM_BY_EDMA, KERNEL_CODES, 0)                   \
   X(KERNEL_RUNS, 8, "runs", PARAM_BY_EDMA, KERNEL_CODES, 0)                       \
   X(KERNEL_COPY, 9, "copy", PARAM_BY_EDMA, KERNEL_CODES, 0)                       \
-  X(KERNEL_FASTEST, 10, "fastest", PARAM_BY_CORE, KERNEL_STAGED, 1)               \
+  X(KERNEL_FASTEST, 10, "fastest", PARAM_BY_ANOTHER, KERNEL_STAGED, 1)            \
   X(KERNEL_ENGINE, 11, "engine", PARAM_BY_ENGINE, KERNEL_STAGED, 1)               \
   X(KERNEL_ENGINE_GRID, 12, "engine_grid", PARAM_BY_ENGINE, KERNEL_STAGED, 0)     \
-  X(KERNEL_ENGINE_RADIAL, 13, "engine_radial", PARAM_BY_ENGINE, KERNEL_STAGED, 0)
-enum param_kernel { PARAM_KERNELS(PARAM_CONSTANT) };
-#define PARAM_KERNEL_OTHERWISE(kernel, code, word, mover, otherwise, views) kernel##_OTHERWISE = otherwise,
-enum param_kernel_otherwise { PARAM_KERNELS(PARAM_KERNEL_OTHERWISE) };
+  X(KERNEL_ENGINE_RADIAL, 13, "engine_radial", PARAM_BY_ENGINE, KERNEL_STAGED, 0) \
+  /* the end */
+enum param_kernel { PARAM_KERNELS(PARAM_CONSTANT) KERNEL_COUNT };
 
 /* The look-up tables of a run that measures the remap loop by itself: table k is that of the camera's view, moved to
  * the right by k * PARAM_TABLE_STEP_PX (lens_view_t, shift_x). The step is odd, so that the first pixels of the pairs

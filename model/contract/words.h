@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,7 +19,6 @@ struct Word {
 #define FOVEA_WORD(constant, code, word, ...) Word{word, code},
 inline constexpr std::array kMappings = {PARAM_MAPPINGS(FOVEA_WORD)};
 inline constexpr std::array kPairMethods = {PARAM_PAIR_METHODS(FOVEA_WORD)};
-inline constexpr std::array kKernels = {PARAM_KERNELS(FOVEA_WORD)};
 inline constexpr std::array kBuilders = {PARAM_BUILDERS(FOVEA_WORD)};
 inline constexpr std::array kFlows = {PARAM_FLOWS(FOVEA_WORD)};
 inline constexpr std::array kMasterWords = {PARAM_MASTERS(FOVEA_WORD)};
@@ -31,36 +31,23 @@ struct KernelFacts {
   std::uint32_t otherwise;  ///< the kernel that is taken in its place; itself at the end of a chain
   bool views;               ///< it has a form for several sources
 };
-inline constexpr std::array kKernelFacts = {
-#define FOVEA_FACTS(constant, code, word, mover, otherwise, views) KernelFacts{code, mover, otherwise, views != 0},
-    PARAM_KERNELS(FOVEA_FACTS)
-#undef FOVEA_FACTS
-};
-constexpr const KernelFacts& facts_of(std::uint32_t kernel) { return kKernelFacts[kernel]; }
-static_assert([] {
-  for (std::size_t k = 0; k < kKernelFacts.size(); ++k)
-    if (kKernelFacts[k].code != k || kKernelFacts[k].otherwise >= kKernelFacts.size()) return false;
-  return true;
-}());
+/// Of all kernels, by their codes. In kernels.cpp alone, so that a program can have another table.
+extern const std::span<const Word> kKernels;
+extern const std::span<const KernelFacts> kKernelFacts;
+const KernelFacts& facts_of(std::uint32_t kernel);
 
 /// Whether the EDMA may move pixels if this kernel is asked for.
-constexpr bool may_use_edma(std::uint32_t kernel) {
-  for (;; kernel = facts_of(kernel).otherwise)
-    if (facts_of(kernel).mover == PARAM_BY_EDMA || facts_of(kernel).otherwise == kernel)
-      return facts_of(kernel).mover == PARAM_BY_EDMA;
-}
+bool may_use_edma(std::uint32_t kernel);
 
 /// The words alone, for a parameter that takes them.
-template <std::size_t N>
-std::vector<std::string> words(const std::array<Word, N>& table) {
+inline std::vector<std::string> words(std::span<const Word> table) {
   std::vector<std::string> out;
   for (const Word& w : table) out.emplace_back(w.word);
   return out;
 }
 
 /// The code of a word; the order of the words means nothing.
-template <std::size_t N>
-constexpr std::uint32_t code_of(const std::array<Word, N>& table, std::string_view word) {
+constexpr std::uint32_t code_of(std::span<const Word> table, std::string_view word) {
   for (const Word& w : table)
     if (w.word == word) return w.code;
   return ~0u;

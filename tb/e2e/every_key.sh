@@ -408,7 +408,7 @@ clocks.arm=270MHz clocks.ddr=216MHz
 ddr.scheduler=closed_page
 T
   local kernel
-  for kernel in plain ldm strips offsets16 deltas4 codes staged gather runs copy fastest engine engine_grid engine_radial; do
+  for kernel in $("$fovea" params firmware.kernel | grep -o 'plain, [a-z0-9_, ]*[a-z]' | head -1 | tr -d ,); do
     echo "LARGER firmware.kernel=$kernel"
     [[ $kernel != engine* ]] || echo "LARGER firmware.kernel=$kernel engine=tlm"
   done

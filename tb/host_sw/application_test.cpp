@@ -492,7 +492,7 @@ TEST_F(ConfigTest, UnknownCodesOfThePageAreRefused) {
     page.*member = before;
     return result;
   };
-  EXPECT_EQ(with(&param_page_t::kernel, KERNEL_ENGINE_RADIAL + 1), CONFIG_BAD_KERNEL);
+  EXPECT_EQ(with(&param_page_t::kernel, KERNEL_COUNT), CONFIG_BAD_KERNEL);
   EXPECT_EQ(with(&param_page_t::table_builder, BUILDER_FIXED + 1), CONFIG_BAD_BUILDER);
   EXPECT_EQ(with(&param_page_t::flow, FLOW_SERIAL + 1), CONFIG_BAD_FLOW);
   EXPECT_EQ(with(&param_page_t::tables, 4), CONFIG_OK);

@@ -1,7 +1,7 @@
 #include "camera_events.h"
 
 #include "../drivers/uart.h"
-#include "pipeline.h"
+#include "pipeline_turns.h"
 #include "say.h"
 
 void camera_events_say(void) {

@@ -5,8 +5,9 @@
 #include "../drivers/timer.h"
 #include "../drivers/uart_queue.h"
 #include "console.h"
-#include "pipeline.h"
+#include "pipeline_turns.h"
 #include "sw/lens/region.h"
+#include "view_tables.h"
 
 /* At least what the longest answer takes: `status` for eight cameras. */
 #define ANSWER_BYTES 2048u

@@ -3,7 +3,7 @@
 #define FOVEA_FIRMWARE_CHOICES_H
 
 #include "config.h"
-#include "view_tables.h"
+#include "view.h"
 
 /** Starts the console, with a line that says how to get help. */
 void choices_start(const config_t *config, struct view *views);

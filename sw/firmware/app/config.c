@@ -106,7 +106,7 @@ config_result_t config_read(config_t *c, uint32_t dip, const param_page_t *page)
                   .vpss_clk_ctrl = page->clocks.vpss_clk_ctrl};
   for (uint32_t i = 0; i < PRIORITY_COUNT; ++i) c->priority[i] = page->priority[i];
   if (SWITCH_GET(dip, SWITCH_STANDARD_OUT) != standard) return CONFIG_BAD_STANDARDS;
-  if (page->kernel > KERNEL_ENGINE_RADIAL) return CONFIG_BAD_KERNEL;
+  if (page->kernel >= KERNEL_COUNT) return CONFIG_BAD_KERNEL;
   if (page->table_builder > BUILDER_FIXED) return CONFIG_BAD_BUILDER;
   if (page->flow > FLOW_SERIAL) return CONFIG_BAD_FLOW;
   if (c->tables > PARAM_TABLES_MAX) return CONFIG_BAD_TABLES;

@@ -7,6 +7,7 @@
 #include "../drivers/timer.h"
 #include "../drivers/uart.h"
 #include "config.h"
+#include "fail.h"
 #include "overlay.h"
 #include "pipeline.h"
 #include "program.h"

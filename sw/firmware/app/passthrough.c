@@ -5,6 +5,7 @@
 #include "../drivers/timer.h"
 #include "../drivers/uart.h"
 #include "config.h"
+#include "fail.h"
 #include "pipeline.h"
 #include "state.h"
 #include "sw/lens/lens.h"

@@ -14,9 +14,9 @@
 #include "../drivers/uart.h"
 #include "../drivers/vpss.h"
 #include "capture.h"
+#include "fail.h"
 #include "output.h"
 #include "pipeline_state.h"
-#include "state.h"
 #ifdef TIME_DIVISION
 #include "../drivers/uart_queue.h"
 #include "pipeline_turns.h"

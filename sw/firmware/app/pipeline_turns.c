@@ -7,10 +7,10 @@
 #include "../drivers/tvp5146.h"
 #include "../drivers/tvp5146_inputs.h"
 #include "../drivers/uart.h"
-#include "camera_events.h"
 #include "capture_check.h"
-#include "pipeline.h"
+#include "fail.h"
 #include "pipeline_state.h"
+#include "turns.h"
 #ifdef CONSOLE
 #include "../drivers/multiplexer.h"
 #include "view.h"

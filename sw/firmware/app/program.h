@@ -24,4 +24,11 @@ void program_work(void);
  * pipeline_done(). */
 void program_frame(uint8_t *out, uint32_t sequence);
 
+#ifdef CONSOLE
+/** For view_tables.c, while a table is built: corrects the frame that waits, if there is one, and has what it needs. To
+ * be called with interrupts masked, and returns with them masked; they are open meanwhile.
+ * @return 0 if there was nothing to do */
+int correct_next_frame(void);
+#endif
+
 #endif

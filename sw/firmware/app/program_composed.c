@@ -10,6 +10,7 @@
 #include "composition.h"
 #include "overlay.h"
 #include "pipeline.h"
+#include "pipeline_turns.h"
 #include "program.h"
 #include "progress.h"
 #include "state.h"

@@ -5,6 +5,7 @@
 #include "../drivers/cp15.h"
 #include "../drivers/uart.h"
 #include "../kernels/engine_jobs.h"
+#include "fail.h"
 #include "pipeline.h"
 #include "program.h"
 #include "state.h"

@@ -1,5 +1,4 @@
 /* Cameras in turn, each with a table of its own, and a console (choices.h). */
-#include <stddef.h>
 
 #include "../drivers/cp15.h"
 #include "../drivers/uart.h"
@@ -7,6 +6,7 @@
 #include "camera_events.h"
 #include "choices.h"
 #include "pipeline.h"
+#include "pipeline_turns.h"
 #include "program.h"
 #include "progress.h"
 #include "say.h"

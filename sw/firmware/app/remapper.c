@@ -10,22 +10,9 @@ typedef struct choice {
   uint8_t otherwise;            /* enum param_kernel */
 } choice_t;
 
-static const choice_t kChoices[] = {
-    [KERNEL_PLAIN] = {&method_plain, KERNEL_PLAIN_OTHERWISE},
-    [KERNEL_LDM] = {&method_ldm, KERNEL_LDM_OTHERWISE},
-    [KERNEL_STRIPS] = {&method_strips, KERNEL_STRIPS_OTHERWISE},
-    [KERNEL_OFFSETS] = {&method_offsets, KERNEL_OFFSETS_OTHERWISE},
-    [KERNEL_DELTAS] = {&method_deltas, KERNEL_DELTAS_OTHERWISE},
-    [KERNEL_CODES] = {&method_codes, KERNEL_CODES_OTHERWISE},
-    [KERNEL_STAGED] = {&method_staged, KERNEL_STAGED_OTHERWISE},
-    [KERNEL_GATHER] = {&method_gather, KERNEL_GATHER_OTHERWISE},
-    [KERNEL_RUNS] = {&method_runs, KERNEL_RUNS_OTHERWISE},
-    [KERNEL_COPY] = {&method_copy, KERNEL_COPY_OTHERWISE},
-    [KERNEL_FASTEST] = {NULL, KERNEL_FASTEST_OTHERWISE},
-    [KERNEL_ENGINE] = {&method_engine, KERNEL_ENGINE_OTHERWISE},
-    [KERNEL_ENGINE_GRID] = {&method_engine_grid, KERNEL_ENGINE_GRID_OTHERWISE},
-    [KERNEL_ENGINE_RADIAL] = {&method_engine_radial, KERNEL_ENGINE_RADIAL_OTHERWISE},
-};
+#define CHOICE(kernel, code, word, mover, otherwise, views) \
+  [kernel] = {(mover) == PARAM_BY_ANOTHER ? NULL : &method_##kernel, otherwise},
+static const choice_t kChoices[] = {PARAM_KERNELS(CHOICE)};
 
 enum { kChoiceCount = sizeof kChoices / sizeof *kChoices };
 

@@ -2,7 +2,9 @@
 
 #include "../drivers/cp15.h"
 #include "../drivers/timer.h"
-#include "pipeline.h"
+#include "fail.h"
+#include "pipeline_turns.h"
+#include "program.h"
 #include "progress.h"
 #include "state.h"
 

@@ -19,10 +19,4 @@ int view_tables_rebuild(struct view *views, uint32_t k, const lens_view_t *view)
 /** For the tail of the interrupt handler, with interrupts masked: is a build suspended for which a frame waits? */
 int background_frame_due(void);
 
-/* What the program provides. */
-
-/** Corrects the frame that waits, if there is one, and has what it needs. To be called with interrupts masked, and
- * returns with them masked; they are open meanwhile. @return 0 if there was nothing to do */
-int correct_next_frame(void);
-
 #endif

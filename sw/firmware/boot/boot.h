@@ -11,9 +11,6 @@
  * clock was changed; DDR2 must not be touched then, and the caller stops. */
 param_page_result_t boot_init(const param_page_t *page);
 
-/** Prints the cause and stops; called by the exception entries. */
-void fatal_exception(uint32_t kind, uint32_t pc) __attribute__((noreturn));
-
 /** Sleeps for ever with interrupts masked. */
 void stop(void) __attribute__((noreturn));
 

@@ -1,3 +1,5 @@
+#include "exception.h"
+
 #include "../drivers/gpio.h"
 #include "../drivers/uart.h"
 #include "boot.h"

@@ -40,9 +40,10 @@ typedef struct remap_method {
   void (*run)(const remap_table_t *table, const void *in, void *out);
 } remap_method_t;
 
-extern const remap_method_t method_plain, method_ldm, method_strips, method_offsets, method_deltas,
-    method_codes, method_staged;
-extern const remap_method_t method_gather, method_runs, method_copy; /* by the EDMA alone */
-extern const remap_method_t method_engine, method_engine_grid, method_engine_radial;
+/* The methods of the rows of PARAM_KERNELS: method_KERNEL_PLAIN and so on, each defined in a source of this folder.
+ * One that is moved by another, as that of `fastest`, is not there. */
+#define REMAP_METHOD(kernel, ...) extern const remap_method_t method_##kernel;
+PARAM_KERNELS(REMAP_METHOD)
+#undef REMAP_METHOD
 
 #endif

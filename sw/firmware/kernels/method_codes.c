@@ -20,4 +20,4 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   encoded_black(table, out);
 }
 
-const remap_method_t method_codes = {"codes", prepare, run};
+const remap_method_t method_KERNEL_CODES = {"codes", prepare, run};

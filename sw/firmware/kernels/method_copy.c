@@ -41,4 +41,4 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   edma_wait_all(kCodes);
 }
 
-const remap_method_t method_copy = {"copy", prepare, run};
+const remap_method_t method_KERNEL_COPY = {"copy", prepare, run};

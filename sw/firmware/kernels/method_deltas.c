@@ -19,4 +19,4 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   encoded_black(table, out);
 }
 
-const remap_method_t method_deltas = {"deltas4", prepare, run};
+const remap_method_t method_KERNEL_DELTAS = {"deltas4", prepare, run};

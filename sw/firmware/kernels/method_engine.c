@@ -70,6 +70,6 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   engine_jobs_wait();
 }
 
-const remap_method_t method_engine = {"engine", prepare_table, run};
-const remap_method_t method_engine_grid = {"engine_grid", prepare_grid, run};
-const remap_method_t method_engine_radial = {"engine_radial", prepare_radial, run};
+const remap_method_t method_KERNEL_ENGINE = {"engine", prepare_table, run};
+const remap_method_t method_KERNEL_ENGINE_GRID = {"engine_grid", prepare_grid, run};
+const remap_method_t method_KERNEL_ENGINE_RADIAL = {"engine_radial", prepare_radial, run};

@@ -42,4 +42,4 @@ static const char *prepare(remap_table_t *table, arena_t *arena) {
   return NULL;
 }
 
-const remap_method_t method_gather = {"gather", prepare, pipes_run};
+const remap_method_t method_KERNEL_GATHER = {"gather", prepare, pipes_run};

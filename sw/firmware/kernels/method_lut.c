@@ -26,5 +26,5 @@ static void run_ldm(const remap_table_t *table, const void *in, void *out) {
   run(remap_ldm, table, in, out);
 }
 
-const remap_method_t method_plain = {"plain", prepare, run_plain};
-const remap_method_t method_ldm = {"ldm", prepare, run_ldm};
+const remap_method_t method_KERNEL_PLAIN = {"plain", prepare, run_plain};
+const remap_method_t method_KERNEL_LDM = {"ldm", prepare, run_ldm};

@@ -18,4 +18,4 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   encoded_black(table, out);
 }
 
-const remap_method_t method_offsets = {"offsets16", prepare, run};
+const remap_method_t method_KERNEL_OFFSETS = {"offsets16", prepare, run};

@@ -65,4 +65,4 @@ static const char *prepare(remap_table_t *table, arena_t *arena) {
   return NULL;
 }
 
-const remap_method_t method_runs = {"runs", prepare, pipes_run};
+const remap_method_t method_KERNEL_RUNS = {"runs", prepare, pipes_run};

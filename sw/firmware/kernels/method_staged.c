@@ -1,6 +1,6 @@
 /* The remap in tiles that the EDMA brings into internal RAM, and of which it takes a part of the
  * results away: README.md, "The staged remap". */
-#include "../app/pipeline.h"
+#include "../app/fail.h"
 #include "../drivers/cp15.h"
 #include "../drivers/edma.h"
 #include "../mmio.h"
@@ -232,4 +232,4 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   if (staged->tiles.black != 0) remap_black(out, staged->black);
 }
 
-const remap_method_t method_staged = {"staged", prepare, run};
+const remap_method_t method_KERNEL_STAGED = {"staged", prepare, run};

@@ -28,4 +28,4 @@ static void run(const remap_table_t *table, const void *in, void *out) {
   }
 }
 
-const remap_method_t method_strips = {"strips", prepare, run};
+const remap_method_t method_KERNEL_STRIPS = {"strips", prepare, run};

@@ -30,8 +30,9 @@ static uint32_t random_below(uint32_t n) {
   return state % n;
 }
 
-static const remap_method_t *const kMethods[] = {&method_plain,   &method_ldm,    &method_strips,
-                                                 &method_offsets, &method_deltas, &method_codes};
+static const remap_method_t *const kMethods[] = {
+    &method_KERNEL_PLAIN,   &method_KERNEL_LDM,    &method_KERNEL_STRIPS,
+    &method_KERNEL_OFFSETS, &method_KERNEL_DELTAS, &method_KERNEL_CODES};
 enum { METHODS = sizeof kMethods / sizeof *kMethods };
 
 /* A table like those of lenses: rows that go on by few different steps. */
