@@ -30,7 +30,7 @@ inline constexpr SystemDefect kSystemDefects[] = {
      "  forget();\n  ++insertions_;", "  if (!PLANTED) forget();\n  ++insertions_;",
      "MmuTest.ReplacedEntry*"},
     {"the line of a failed fill stays valid", "data_cache.cpp",
-     "    lines_.invalidate(index);\n    Diag", "    if (!PLANTED) lines_.invalidate(index);\n    Diag",
+     "    lines_.invalidate(index);\n    diag", "    if (!PLANTED) lines_.invalidate(index);\n    diag",
      "BufferTest.FailedFill*"},
     {"a fetch from another line does not wait for the fill", "fetch_unit.cpp",
      "if (ledger_.cycle < fill.last && fill.line", "if (!PLANTED && ledger_.cycle < fill.last && fill.line",
