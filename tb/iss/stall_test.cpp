@@ -180,7 +180,7 @@ TEST(StallTest, AMissingChargeIsFound) {
   Noting m;
   m.execute(kStart + "ldr r0, [r4]\n str r0, [r9]");
   ASSERT_EQ(m.core.counts().unexplained(), Cause::kCount);
-  for (std::size_t k = 1; k < kCauses; ++k) {
+  for (std::size_t k = 1; k < kCauseTable.size(); ++k) {
     Counts missing = m.core.counts(), twice = m.core.counts();
     ++missing.stall[k];
     EXPECT_EQ(missing.unexplained(), static_cast<Cause>(k));

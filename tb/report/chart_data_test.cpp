@@ -24,7 +24,7 @@ using ::testing::ElementsAre;
 TEST(WordsTest, EachCauseCulpritAndMasterHasItsWordsAndItsColour) {
   const json words = words_json();
   for (const cpu::CauseInfo& cause : cpu::kCauseTable) EXPECT_TRUE(words["causes"].contains(cause.name)) << cause.name;
-  EXPECT_EQ(words["causes"].size(), cpu::kCauses + 2);  // and of `issue` and `idle`
+  EXPECT_EQ(words["causes"].size(), cpu::kCauseTable.size() + 2);  // and of `issue` and `idle`
   std::map<std::string, std::set<std::string>> members;
   for (const auto& [culprit, group] : words["group_of"].items()) {
     EXPECT_TRUE(words["groups"].contains(std::string(group))) << culprit;

@@ -5,46 +5,56 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <span>
+#include <string_view>
 
 #include "model/common/waits.h"
 #include "model/cpu/core/regions.h"
 
 namespace fovea::cpu {
 
-enum class Cause : std::uint8_t {
-  kInterlock, kIcache, kDcache, kWriteBuffer, kUncached, kTlb, kTcm, kCacheOp, kDrain, kBusSync,
-  kCount
-};
-inline constexpr std::size_t kCauses = static_cast<std::size_t>(Cause::kCount);
+/// The causes of stalls, the one list of them: X(constant, name in cpu.stall.NAME, sentence of that statistic, words
+/// beside a bar of a chart, words that follow "waits for", whether others than the core may be to blame). A new row
+/// comes last (model/howto/add-a-stall-cause.md).
+#define FOVEA_STALL_CAUSES(X)                                                                             \
+  X(kInterlock, "interlock", "clocks waiting for a register",                                             \
+    "interlocks", "results of earlier instructions (interlocks)", false)                                  \
+  X(kIcache, "icache", "clocks waiting for line fills of the I-cache",                                    \
+    "I-cache fills", "I-cache line fills", true)                                                          \
+  X(kDcache, "dcache", "clocks waiting for line fills of the D-cache",                                    \
+    "D-cache fills", "D-cache line fills", true)                                                          \
+  X(kWriteBuffer, "write_buffer", "clocks waiting for room in the write or victim buffer",                \
+    "write buffer full", "room in the write buffer", true)                                                \
+  X(kUncached, "uncached", "clocks waiting for uncached reads and fetches and for unbuffered writes",     \
+    "uncached accesses", "uncached accesses", true)                                                       \
+  X(kTlb, "tlb", "clocks waiting for page walks", "page walks", "page walks", true)                       \
+  X(kTcm, "tcm", "clocks of wait states of internal RAM, and waiting for DMA there",                      \
+    "internal RAM", "internal RAM", true)                                                                 \
+  X(kCacheOp, "cache_op", "clocks of cache maintenance", "cache maintenance", "cache maintenance", true)  \
+  X(kDrain, "drain", "clocks waiting for the write buffer to drain",                                      \
+    "draining writes", "the write buffer to drain", true)                                                 \
+  X(kBusSync, "bus_sync", "clocks waiting for an AHB clock edge, or for the first edge of another clock", \
+    "bus clock edge", "an edge of the bus clock", false)                                                  \
+  /* the end */
+#define FOVEA_CONSTANT(constant, ...) constant,
+enum class Cause : std::uint8_t { FOVEA_STALL_CAUSES(FOVEA_CONSTANT) kCount };
+#undef FOVEA_CONSTANT
+/// Places in tables by cause: a few more than there are causes, so that one more changes the shape of no table.
+inline constexpr std::size_t kCauses = 12;
+static_assert(static_cast<std::size_t>(Cause::kCount) <= kCauses, "tables by cause need more places");
 constexpr std::size_t index(Cause c) { return static_cast<std::size_t>(c); }
 
 struct CauseInfo {
   Cause cause;
-  const char* name;      ///< in cpu.stall.NAME
-  const char* sentence;  ///< of that statistic
+  const char* name;       ///< in cpu.stall.NAME
+  const char* sentence;   ///< of that statistic
+  const char* label;      ///< "D-cache fills", beside a bar
+  const char* waits_for;  ///< "D-cache line fills", to follow "waits for"
+  bool others;            ///< others may be the culprit; of the rest it is always the core
 };
-/// All causes in the order of the enumeration: the one list of their names.
-inline constexpr std::array<CauseInfo, kCauses> kCauseTable = {{
-    {Cause::kInterlock, "interlock", "clocks waiting for a register"},
-    {Cause::kIcache, "icache", "clocks waiting for line fills of the I-cache"},
-    {Cause::kDcache, "dcache", "clocks waiting for line fills of the D-cache"},
-    {Cause::kWriteBuffer, "write_buffer",
-     "clocks waiting for room in the write or victim buffer"},
-    {Cause::kUncached, "uncached",
-     "clocks waiting for uncached reads and fetches and for unbuffered writes"},
-    {Cause::kTlb, "tlb", "clocks waiting for page walks"},
-    {Cause::kTcm, "tcm", "clocks of wait states of internal RAM, and waiting for DMA there"},
-    {Cause::kCacheOp, "cache_op", "clocks of cache maintenance"},
-    {Cause::kDrain, "drain", "clocks waiting for the write buffer to drain"},
-    {Cause::kBusSync, "bus_sync",
-     "clocks waiting for an AHB clock edge, or for the first edge of another clock"},
-}};
-static_assert([] {
-  for (std::size_t k = 0; k < kCauses; ++k)
-    if (index(kCauseTable[k].cause) != k) return false;
-  return true;
-}());
-constexpr const char* cause_name(Cause c) { return kCauseTable[index(c)].name; }
+/// Of all causes, in the order of the enumeration. In stalls.cpp alone, so that a program can have another table.
+extern const std::span<const CauseInfo> kCauseTable;
+inline const char* cause_name(Cause c) { return kCauseTable[index(c)].name; }
 
 /// What ended a sleep: an interrupt of one of these.
 enum class WakeEvent : std::uint8_t { kDma, kEngine, kCapture, kDisplay, kTimer, kOther, kCount };
@@ -75,10 +85,6 @@ inline constexpr std::size_t kCore = kCulprits, kStallCulprits = kCulprits + 1;
 inline constexpr std::size_t kService = index(Culprit::kService);
 constexpr std::string_view stall_culprit_name(std::size_t culprit) {
   return culprit == kCore ? "core" : culprit_name(static_cast<Culprit>(culprit));
-}
-/// Causes for which others may be the culprit; for the rest it is always the core.
-constexpr bool waits_for_others(Cause c) {
-  return c != Cause::kInterlock && c != Cause::kBusSync;
 }
 
 /// Stalled clocks by cause, region and culprit. Interlocks are not included: the running chain of

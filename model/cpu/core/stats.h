@@ -78,7 +78,7 @@ struct Counts {
   }
   /// The first cause whose clocks do not equal the sum over its regions and culprits; kCount: none.
   Cause unexplained() const {
-    for (std::size_t k = 0; k < kCauses; ++k) {
+    for (std::size_t k = 0; k < index(Cause::kCount); ++k) {
       const auto cause = static_cast<Cause>(k);
       if (cause != Cause::kInterlock && stalls.total(cause) != stall[k]) return cause;
     }
@@ -196,7 +196,7 @@ struct CoreStats : StatGroup {
   }
   void add_stalls_by_culprit() {
     for (const CauseInfo& info : kCauseTable) {
-      if (!waits_for_others(info.cause)) continue;
+      if (!info.others) continue;
       const std::string name = info.name;
       for (std::size_t c = 0; c < kStallCulprits; ++c) {
         const std::string culprit(stall_culprit_name(c));

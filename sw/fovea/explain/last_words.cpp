@@ -54,9 +54,9 @@ Part wait_of_remaps(std::span<const StatRow> stats) {
 
 std::vector<Part> stalls(std::span<const StatRow> stats, const std::string& prefix) {
   std::vector<Part> out;
-  for (const results::CauseWords& w : results::cause_words())
-    out.push_back({fmt::format("waiting for {}", w.waits_for),
-                   count(stats, fmt::format("{}stall.{}", prefix, w.name))});
+  for (const cpu::CauseInfo& info : cpu::kCauseTable)
+    out.push_back({fmt::format("waiting for {}", info.waits_for),
+                   count(stats, fmt::format("{}stall.{}", prefix, info.name))});
   return out;
 }
 

@@ -11,8 +11,8 @@
 namespace fovea::explain {
 
 std::string waits_for(std::string_view cause) {
-  for (const results::CauseWords& w : results::cause_words())
-    if (w.name == cause) return std::string(w.waits_for);
+  for (const cpu::CauseInfo& info : cpu::kCauseTable)
+    if (info.name == cause) return info.waits_for;
   return std::string(cause);
 }
 

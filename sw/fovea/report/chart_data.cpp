@@ -215,7 +215,7 @@ Json stack_tree(const std::vector<std::pair<std::string, std::uint64_t>>& stacks
 
 Json words_json() {
   Json out{{"causes", {{"issue", "instructions issue"}, {"idle", "idle (waits for an interrupt)"}}}};
-  for (const results::CauseWords& w : results::cause_words()) out["causes"][std::string(w.name)] = w.label;
+  for (const cpu::CauseInfo& info : cpu::kCauseTable) out["causes"][info.name] = info.label;
   std::map<results::Group, std::string> keys;
   for (const results::GroupWords& w : results::group_words()) {
     keys[w.group] = w.key;

@@ -5,26 +5,9 @@
 
 #include "model/common/masters.h"
 #include "model/common/waits.h"
-#include "model/cpu/core/stalls.h"
 
 namespace fovea::results {
 namespace {
-
-constexpr std::array<CauseWords, cpu::kCauses> kCauses{{
-    {"interlock", "interlocks", "results of earlier instructions (interlocks)"},
-    {"icache", "I-cache fills", "I-cache line fills"},
-    {"dcache", "D-cache fills", "D-cache line fills"},
-    {"write_buffer", "write buffer full", "room in the write buffer"},
-    {"uncached", "uncached accesses", "uncached accesses"},
-    {"tlb", "page walks", "page walks"},
-    {"tcm", "internal RAM", "internal RAM"},
-    {"cache_op", "cache maintenance", "cache maintenance"},
-    {"drain", "draining writes", "the write buffer to drain"},
-    {"bus_sync", "bus clock edge", "an edge of the bus clock"},
-}};
-static_assert(std::equal(kCauses.begin(), kCauses.end(), cpu::kCauseTable.begin(),
-                         [](const CauseWords& a, const cpu::CauseInfo& b) { return a.name == b.name; }),
-              "each stall cause of the model has its words, in the model's order");
 
 constexpr std::array kGroups{
     GroupWords{Group::kIssue, "issue", "instructions", 0},
@@ -90,7 +73,6 @@ const MasterInfo* master_row(std::string_view name) {
 
 }  // namespace
 
-std::span<const CauseWords> cause_words() { return kCauses; }
 std::span<const GroupWords> group_words() { return kGroups; }
 std::span<const CulpritWords> culprit_words() { return kCulprits; }
 std::span<const Look> looks() { return kLooks; }

@@ -1,20 +1,12 @@
-// The words for people of what results name: stall causes, culprits, masters, and the groups and colours in which
-// charts show them. The one list; the page of a report gets it with its data.
+// The words for people of what results name: culprits, masters, and the groups and colours in which charts show them
+// (those of stall causes are in their rows, model/cpu/core/stalls.h). The one list; the page of a report gets it with
+// its data.
 #pragma once
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace fovea::results {
-
-/// What the core is stalled for.
-struct CauseWords {
-  std::string_view name;       ///< in cpu.stall.NAME
-  std::string_view label;      ///< "D-cache fills", beside a bar
-  std::string_view waits_for;  ///< "D-cache line fills", to follow "waits for"
-};
-/// In the order of the model.
-std::span<const CauseWords> cause_words();
 
 /// Groups of culprits that colours can tell apart.
 enum class Group { kIssue, kItself, kBridge, kWay, kRows, kVideo, kCopying, kOther };

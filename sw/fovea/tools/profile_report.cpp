@@ -17,7 +17,9 @@ namespace fovea::app {
 namespace {
 
 using cpu::ProfileRow;
-constexpr std::size_t kColumns = ProfileRow::kStall + cpu::kCauses;  // issue, sleeps, stalls
+// Issue, sleeps, stalls; the last places may belong to no cause.
+constexpr std::size_t kMostColumns = ProfileRow::kStall + cpu::kCauses;
+std::size_t columns() { return ProfileRow::kStall + cpu::kCauseTable.size(); }
 
 std::string cause_text(std::size_t cause) {
   if (cause == ProfileRow::kIssue) return "issue";
@@ -30,7 +32,7 @@ std::string cause_text(std::size_t cause) {
 
 /// Clocks by cause, and instructions.
 struct Sums {
-  std::array<std::uint64_t, kColumns> by_cause{};
+  std::array<std::uint64_t, kMostColumns> by_cause{};
   std::uint64_t instructions = 0;
   std::uint64_t clocks() const {
     std::uint64_t n = 0;
@@ -74,7 +76,7 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 /// "issue 61 %, dcache 30 %": the causes with at least 5 %, most first.
 std::string causes_text(const Sums& s) {
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
-  for (std::size_t k = 0; k < kColumns; ++k) order.emplace_back(s.by_cause[k], k);
+  for (std::size_t k = 0; k < columns(); ++k) order.emplace_back(s.by_cause[k], k);
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::string out;
@@ -303,7 +305,7 @@ std::string profile_callgrind(const ProfileData& data, SourceLines& lines) {
       "# callgrind format\nversion: 1\ncreator: fovea\ncmd: {}\npositions: instr line\n",
       data.program);
   out += "event: Clocks : core clocks\nevents: Clocks Instructions";
-  for (std::size_t k = 0; k < kColumns; ++k) {
+  for (std::size_t k = 0; k < columns(); ++k) {
     std::string name = cause_text(k);
     name[0] = static_cast<char>(name[0] - 'a' + 'A');
     std::replace(name.begin(), name.end(), '.', '_');
@@ -311,7 +313,7 @@ std::string profile_callgrind(const ProfileData& data, SourceLines& lines) {
   }
   const auto numbers = [](const Sums& s) {
     std::string text = fmt::format("{} {}", s.clocks(), s.instructions);
-    for (const std::uint64_t n : s.by_cause) text += fmt::format(" {}", n);
+    for (std::size_t k = 0; k < columns(); ++k) text += fmt::format(" {}", s.by_cause[k]);
     return text;
   };
   const auto by_address = window_sums(data, [](std::uint32_t a) { return a; });
