@@ -275,7 +275,7 @@ TEST_F(LimitsTest, NamesWhatBindsAndNothingElse) {
   EXPECT_THAT(d.out, HasSubstr("Does not bind: ddr_latency (+0.6 %; family, +0.6 to +1.9 %)"));
   // A replay of what is no trace is no answer, and that is said.
   EXPECT_THAT(d.out, HasSubstr("display (its replay failed: error: '"));
-  EXPECT_THAT(d.out, HasSubstr("bus.trace':1: it is 'no trace', a line of none of the known trace formats"));
+  EXPECT_THAT(d.out, HasSubstr("bus.trace':1: it is 'the trace', a line of none of the known trace formats"));
   EXPECT_THAT(d.out, Not(HasSubstr("display (+")));
   EXPECT_THAT(line_of(table, "display"), HasSubstr(",display,,,"));
 }
