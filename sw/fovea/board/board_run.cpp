@@ -482,7 +482,10 @@ Result BoardMachine::run(const Request& request) {
       board_->observe_frames([&](const video::DisplayFrame& f, const board::FrameRecord& r) {
         take_frame(session, cameras, f, r);
       });
-  if (!session.wants_frames()) board_->measure_whole_run();
+  if (!session.wants_frames()) {
+    board_->measure_whole_run();
+    tools_.open_window();
+  }
   attach_host(session);
 
   result.complete = simulate(session);
