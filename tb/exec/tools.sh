@@ -9,10 +9,10 @@ mkdir -p "$out"
 cd "$out" || exit 1
 fail() { echo "$*"; exit 1; }
 for machine in core board; do
-  program=$core flag=()
-  [ $machine = board ] && program=$board flag=(--board)
-  "$fovea" exec -q "${flag[@]}" "$program" 1 >words -o "plain_$machine" 2>said || fail "$machine: $(<said)"
-  "$fovea" exec -q "${flag[@]}" --command-trace "$machine.csv" -o "traced_$machine" "$program" 1 >also 2>said ||
+  program=("$core" 0) flag=()
+  [ $machine = board ] && program=("$board" 1) flag=(--board)
+  "$fovea" exec -q "${flag[@]}" "${program[@]}" >words -o "plain_$machine" 2>said || fail "$machine fails: $(<said)"
+  "$fovea" exec -q "${flag[@]}" --command-trace "$machine.csv" -o "traced_$machine" "${program[@]}" >also 2>said ||
     fail "$machine with a command trace: $(<said)"
   cmp words also && cmp "plain_$machine/stats.json" "traced_$machine/stats.json" || fail "$machine: the trace changes it"
   # A trace of the whole run has each command that the figures count.
@@ -22,7 +22,7 @@ for machine in core board; do
     counted=$(grep -o "\"ddr.$figure\": {\"value\": [0-9]*" "plain_$machine/stats.json" | grep -o '[0-9]*$')
     [ "$counted" -gt 9 ] && [ "$traced" = "$counted" ] || fail "$machine: $traced in the trace, $counted $figure"
   done
-  "$fovea" exec -q "${flag[@]}" --around 1ms "$program" 1 >words 2>said || fail "$machine: $(<said)"
+  "$fovea" exec -q "${flag[@]}" --around 1ms "${program[@]}" >words 2>said || fail "$machine fails: $(<said)"
   [ "$(head -1 said | cut -d, -f1-3)" = master,direction,port ] || fail "$machine: no list of requests: $(<said)"
 done
 "$fovea" exec -q --board --perfetto board.pf "$board" 1 >words 2>said || fail "no Perfetto trace: $(<said)"
