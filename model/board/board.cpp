@@ -86,12 +86,15 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
     log.pins(out, at);
     phase_observers_.each([&](const PhaseObserver& f) { f(log.phase(), at); });
   });
-  dm365.isif.on_frame_end = [this](const video::CaptureFrame& f) {
-    if (f.complete) log.capture(f.index, f.start, f.end, f.source_camera[0]);
+  dm365.isif.on_frame_start = [this](const video::CaptureFrame& f) { capture_begins(f); };
+  dm365.isif.on_frame_end = [this](const video::CaptureFrame& f) { capture_ends(f); };
+  dm365.osd.on_latch = [this](const video::Osd::Latch& l) {
+    sink.latched(l);
+    latched(l);
   };
-  dm365.osd.on_latch = [this](const video::Osd::Latch& l) { latched(l); };
+  dm365.osd.on_late = [this](unsigned bursts) { sink.late(bursts); };
   if (!params.video.format().is_625) sink.assembler.rows_525 = params.raster_height();
-  sink.assembler.on_frame = [this](const video::DisplayFrame& f) { frame_shown(f); };
+  sink.on_frame = [this](const video::DisplayFrame& f) { frame_shown(f); };
 }
 
 void Board::reset_asked(const std::string& cause) {
@@ -200,6 +203,20 @@ void Board::close_window_now() {
   window_observers_.each([](const WindowObserver& f) { f(false); });
 }
 
+/// The capture knows no cameras: whose picture a frame begins with is asked of the decoder when it begins.
+void Board::capture_begins(const video::CaptureFrame& frame) {
+  constexpr std::size_t kMost = 8;  // those that begin and never end do not pile up
+  if (begun_.size() == kMost) begun_.erase(begun_.begin());
+  begun_.push_back({frame.start, digital ? 0 : decoder.on_wire().camera});
+}
+
+void Board::capture_ends(const video::CaptureFrame& frame) {
+  std::erase_if(begun_, [&](const Begun& b) { return b.start < frame.start; });
+  const bool known = !begun_.empty() && begun_.front().start == frame.start;
+  if (frame.complete)
+    log.capture(frame.index, frame.start, frame.end, known ? begun_.front().camera : video::kNoCamera);
+}
+
 void Board::frame_shown(const video::DisplayFrame& frame) {
   if (!window_open() || frame.start < *window_start_) return;
   const FrameRecord& r = log.shown(frame.start, frame.end);
@@ -230,7 +247,7 @@ void FrameSums::add(const FrameRecord& r, bool whole) {
     return;
   }
   fresh += whole;
-  if (r.camera != kNoCamera) {
+  if (r.camera != video::kNoCamera) {
     if (cameras.size() <= r.camera) cameras.resize(r.camera + 1);
     cameras[r.camera].add(r, whole);
   }

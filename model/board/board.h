@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <systemc>
 #include <vector>
@@ -160,6 +161,8 @@ class Board : public sc_core::sc_module {
   void place_multiplexer();
   void set_switches();
   void latched(const video::Osd::Latch& latch);
+  void capture_begins(const video::CaptureFrame& frame);
+  void capture_ends(const video::CaptureFrame& frame);
   void frame_shown(const video::DisplayFrame& frame);
   void forget_old_frames();
   bool in_window(Picoseconds t) const {
@@ -171,7 +174,8 @@ class Board : public sc_core::sc_module {
   ClockSignal decoder_clk_{"decoder_clk", Frequency(27'000'000)};
   ClockSignal digital_clk_{"digital_clk"};
   struct NoReceiver : video::Bt656If {
-    void line(const video::Bt656Line&) override {}
+    bool begin_line(const video::Bt656Line&) override { return false; }
+    void take_line(std::span<const std::uint8_t>) override {}
   } no_receiver_;
   std::string uart_;
   Observers<UartObserver> uart_observers_;
@@ -182,6 +186,11 @@ class Board : public sc_core::sc_module {
   std::uint64_t wanted_;  // frames; 0: the window does not end with a frame
   std::uint64_t frames_in_window_ = 0;
   bool opening_ = false;
+  struct Begun {
+    Picoseconds start;
+    unsigned camera;
+  };
+  std::vector<Begun> begun_;  ///< the latest captures whose end has not come
   std::optional<ChipReset> chip_reset_;
   std::vector<ChipReset> resets_;
   std::vector<LoadImage> boot_images_;

@@ -4,9 +4,11 @@
 
 namespace fovea::board {
 
-void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end, int camera) {
+using video::kNoCamera;
+
+void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end, unsigned camera) {
   index += first_capture_;
-  captured_[index] = {start, end, camera < 0 ? kNoCamera : static_cast<unsigned>(camera)};
+  captured_[index] = {start, end, camera};
   next_capture_ = index + 1;
   capture_ends_.push_back(end);
   // Only the recent past can still be shown; the history is in records_.

@@ -8,6 +8,7 @@
 
 #include "model/common/units.h"
 #include "model/contract/phases.h"
+#include "model/video/core/picture.h"
 
 namespace fovea::board {
 
@@ -19,9 +20,6 @@ enum class Phase : std::uint8_t {
 };
 constexpr Phase phase_of(std::uint32_t pins) { return static_cast<Phase>(PHASE_OF(pins)); }
 
-/// A frame of no camera: none was locked when it was captured.
-inline constexpr unsigned kNoCamera = ~0u;
-
 /// One displayed frame and the way of the captured frame that it shows.
 struct FrameRecord {
   std::uint64_t index = 0;                       ///< displayed frame since the first corrected one
@@ -31,7 +29,7 @@ struct FrameRecord {
   std::uint64_t dropped = 0;  ///< captured frames skipped since the record before
   bool repeated = false;
   bool relock = false;  ///< repeated, but no newer frame could be on show yet: the decoder had to find the syncs
-  unsigned camera = kNoCamera;  ///< whose frame it shows; kNoCamera: a black one
+  unsigned camera = video::kNoCamera;  ///< whose frame it shows; kNoCamera: a black one
 };
 
 /// A sequence number is the count of complete captures since the last reset, modulo 256; it is unrolled
@@ -39,8 +37,8 @@ struct FrameRecord {
 class FrameLog {
  public:
   /// @param index number of the capture since the last reset
-  /// @param camera whose picture it began with; negative: none
-  void capture(std::uint64_t index, Picoseconds start, Picoseconds end, int camera = 0);
+  /// @param camera whose picture it began with
+  void capture(std::uint64_t index, Picoseconds start, Picoseconds end, unsigned camera = 0);
   void pins(std::uint32_t levels, Picoseconds at);
   /// The display begins a frame and will show this buffer. True if it shows a frame that the
   /// firmware has flipped to.
