@@ -94,7 +94,7 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
   };
   dm365.osd.on_late = [this](unsigned bursts) { sink.late(bursts); };
   if (!params.video.format().is_625) sink.assembler.rows_525 = params.raster_height();
-  sink.on_frame = [this](const video::DisplayFrame& f) { frame_shown(f); };
+  sink.on_frame = [this](video::Frame& f) { frame_shown(f); };
 }
 
 void Board::reset_asked(const std::string& cause) {
@@ -217,11 +217,11 @@ void Board::capture_ends(const video::CaptureFrame& frame) {
     log.capture(frame.index, frame.start, frame.end, known ? begun_.front().camera : video::kNoCamera);
 }
 
-void Board::frame_shown(const video::DisplayFrame& frame) {
-  if (!window_open() || frame.start < *window_start_) return;
-  const FrameRecord& r = log.shown(frame.start, frame.end);
+void Board::frame_shown(video::Frame& frame) {
+  if (!window_open() || frame.times.display_start < *window_start_) return;
+  frame.times = log.shown(frame.times.display_start, frame.times.display_end);
   ++frames_in_window_;
-  frame_observers_.each([&](const FrameObserver& f) { f(frame, r); });
+  frame_observers_.each([&frame](const FrameObserver& f) { f(frame); });
   forget_old_frames();
 }
 
@@ -230,7 +230,7 @@ void Board::forget_old_frames() {
   constexpr std::size_t kKept = 256;
   struct Old {
     Board& board;
-    void operator()(const FrameRecord& r) { board.old_.add(r, true); }
+    void operator()(const video::FrameTimes& r) { board.old_.add(r, true); }
     void operator()(const FrameLog::Remap& m) {
       if (board.in_window(m.end)) board.old_.add(m);
     }
@@ -239,7 +239,7 @@ void Board::forget_old_frames() {
   log.forget(kKept, Old{*this});
 }
 
-void FrameSums::add(const FrameRecord& r, bool whole) {
+void FrameSums::add(const video::FrameTimes& r, bool whole) {
   ++stats.displayed;
   if (r.repeated || !r.captured) {
     ++stats.repeated;
@@ -260,7 +260,7 @@ void FrameSums::add(const FrameRecord& r, bool whole) {
   ++stats.latencies;
 }
 
-void CameraSums::add(const FrameRecord& r, bool whole) {
+void CameraSums::add(const video::FrameTimes& r, bool whole) {
   fresh += whole;
   if (!r.capture_start) return;
   const Picoseconds t = r.display_start - *r.capture_start;
@@ -280,7 +280,7 @@ void FrameSums::add(const FrameLog::Remap& m) {
 
 std::vector<CameraFrameStats> Board::camera_stats() const {
   FrameSums sums = old_;
-  for (const FrameRecord& r : log.records()) sums.add(r, r.display_start < whole_until_);
+  for (const video::FrameTimes& r : log.records()) sums.add(r, r.display_start < whole_until_);
   sums.cameras.resize(params_.input_count());
   std::vector<CameraFrameStats> out(params_.input_count());
   for (std::size_t n = 0; n < out.size(); ++n) {
@@ -307,7 +307,7 @@ FrameStats Board::frame_stats() const {
   const Picoseconds from = *window_start_;
   const Picoseconds to = window_end_ ? *window_end_ : kernel_time();
   FrameSums sums = old_;
-  for (const FrameRecord& r : log.records()) sums.add(r, r.display_start < whole_until_);
+  for (const video::FrameTimes& r : log.records()) sums.add(r, r.display_start < whole_until_);
   for (const auto& m : log.remaps())
     if (m.end > from && m.end <= to) sums.add(m);
   FrameStats& s = sums.stats;

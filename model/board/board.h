@@ -71,7 +71,7 @@ struct CameraSums {
   std::uint64_t fresh = 0, latencies = 0;
   Picoseconds latency_min = 0, latency_max = 0;
   double latency = 0;
-  void add(const FrameRecord& record, bool whole);
+  void add(const video::FrameTimes& frame, bool whole);
 };
 
 /// FrameStats in the making: the sums over the entries of the frame log.
@@ -81,7 +81,7 @@ struct FrameSums {
   double latency = 0, remap = 0;
   std::vector<CameraSums> cameras;
   /// `whole`: its display frame was out before the window's end.
-  void add(const FrameRecord& record, bool whole);
+  void add(const video::FrameTimes& frame, bool whole);
   void add(const FrameLog::Remap& remap);
 };
 
@@ -101,8 +101,8 @@ class Board : public sc_core::sc_module {
   /// Reads memory as the bus sees it now (not through the caches).
   std::vector<std::uint8_t> peek(std::uint32_t address, std::size_t bytes);
 
-  /// Called for each frame shown inside the window, in order.
-  using FrameObserver = std::function<void(const video::DisplayFrame&, const FrameRecord&)>;
+  /// Called for each frame shown inside the window, in order. Its index counts those frames.
+  using FrameObserver = std::function<void(const video::Frame&)>;
   Subscription observe_frames(FrameObserver observer) { return frame_observers_.add(std::move(observer)); }
   /// Called at each change of the pins that show the phase, also if the phase stays.
   using PhaseObserver = std::function<void(Phase, Picoseconds at)>;
@@ -163,7 +163,7 @@ class Board : public sc_core::sc_module {
   void latched(const video::Osd::Latch& latch);
   void capture_begins(const video::CaptureFrame& frame);
   void capture_ends(const video::CaptureFrame& frame);
-  void frame_shown(const video::DisplayFrame& frame);
+  void frame_shown(video::Frame& frame);
   void forget_old_frames();
   bool in_window(Picoseconds t) const {
     return t > *window_start_ && (!window_end_ || t <= *window_end_);

@@ -135,8 +135,8 @@ bool FrameLog::awaits_syncs(Picoseconds start) const {
   return newer == 1 || (newer == 0 && start <= synced_ + 2 * period);
 }
 
-const FrameRecord& FrameLog::shown(Picoseconds start, Picoseconds end) {
-  FrameRecord r;
+const video::FrameTimes& FrameLog::shown(Picoseconds start, Picoseconds end) {
+  video::FrameTimes r;
   r.index = shown_++;
   r.captured = showing_;
   r.display_start = start;

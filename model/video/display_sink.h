@@ -32,12 +32,12 @@ class DisplaySink : public sc_core::sc_module, public Block, public DisplayLineI
   DisplayStats stats;
   FrameAssembler assembler;
   /// Called for each displayed frame, which its receiver may complete.
-  std::function<void(DisplayFrame&)> on_frame;
+  std::function<void(Frame&)> on_frame;
 
   explicit DisplaySink(sc_core::sc_module_name name) : sc_module(name) {
     lines.bind(*this);
     add_statistics(stats);
-    assembler.on_frame = [this](DisplayFrame& frame) { shown(frame); };
+    assembler.on_frame = [this](Frame& frame) { shown(frame); };
   }
   void line(const DisplayLine& l) override {
     assembler.line(l);
@@ -66,7 +66,7 @@ class DisplaySink : public sc_core::sc_module, public Block, public DisplayLineI
   };
   using Buffers = std::array<Buffer, 2>;  // of a frame's fields
 
-  void shown(DisplayFrame& frame) {
+  void shown(Frame& frame) {
     frame.underflows = late_;
     const bool window = buffers_[0].window && buffers_[1].window;
     if (window && buffers_ == previous_ && assembler.unchanged()) ++stats.repeated;

@@ -151,7 +151,7 @@ struct Display : FrameLog {
   /// Shows a frame; whether it is one that the decoder is to blame for.
   bool frame(Picoseconds synced_at) {
     decoder(synced_at);
-    const FrameRecord& r = shown(now, now + 38);
+    const video::FrameTimes& r = shown(now, now + 38);
     now += 40;
     EXPECT_TRUE(r.repeated || !r.relock);
     return r.relock;

@@ -65,7 +65,7 @@ struct Bench {
   FakeMemory memory{"memory"};
   RegisterPort osd_regs{"osd_regs"}, venc_regs{"venc_regs"};
   EdgeLog edges{"edges"};
-  std::vector<DisplayFrame> frames;
+  std::vector<Frame> frames;
   std::vector<Osd::Latch> latches;
 
   Bench() {
@@ -83,7 +83,7 @@ struct Bench {
     tap.out.bind(sink.lines);
     venc.interrupt.out(event);
     edges.in(event);
-    sink.on_frame = [this](const DisplayFrame& f) { frames.push_back(f); };
+    sink.on_frame = [this](const Frame& f) { frames.push_back(f); };
     osd.on_latch = [this](const Osd::Latch& l) {
       sink.latched(l);
       latches.push_back(l);

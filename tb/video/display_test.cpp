@@ -84,7 +84,7 @@ TEST_F(DisplayTest, FrameRateIsExact) {
   const unsigned n = kIs625 ? 25 : 30;
   show(n + 1);
   const Picoseconds expected = kIs625 ? kPsPerSecond : 1'001'000'000'000;
-  const Picoseconds measured = b.frames[n].start - b.frames[0].start;
+  const Picoseconds measured = b.frames[n].times.display_start - b.frames[0].times.display_start;
   EXPECT_LE(measured > expected ? measured - expected : expected - measured, 1u);
 }
 
@@ -97,7 +97,7 @@ TEST_F(DisplayTest, RasterInterruptsAndStatusComeAtTheFieldStarts) {
   ASSERT_GE(b.edges.rises.size(), 2u);
   EXPECT_EQ(b.edges.rises[0], clock.edge(origin));
   EXPECT_EQ(b.edges.rises[1], clock.edge(origin + std::uint64_t{lines} * kStd.line_bytes));
-  EXPECT_EQ(b.frames[0].start,
+  EXPECT_EQ(b.frames[0].times.display_start,
             clock.edge(origin + (kIs625 ? 22u : 16u) * kStd.line_bytes + kStd.active_offset()));
   b.edges.rises.clear();
   while (b.edges.rises.size() < 1) run_for(kPsPerUs);
@@ -233,7 +233,7 @@ TEST_F(DisplayTest, ClockSelectorLeavesTheStandardRasterAloneByDefault) {
   show(2);
   EXPECT_EQ(wrong(b.frames[0].picture), 0u);
   const Picoseconds frame = kStd.frame_bytes() * (kPsPerSecond / 1'000'000) / 27;
-  EXPECT_NEAR(static_cast<double>(b.frames[1].start - b.frames[0].start),
+  EXPECT_NEAR(static_cast<double>(b.frames[1].times.display_start - b.frames[0].times.display_start),
               static_cast<double>(frame), 1.0);
   b.clk_sel.write(false);
 }

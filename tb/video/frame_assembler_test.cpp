@@ -12,7 +12,7 @@ namespace {
 struct Feed {
   explicit Feed(const Standard& standard, Frequency f = kByteClock, Picoseconds start = 12'345)
       : s(standard), clock(f, start) {
-    sink.on_frame = [this](const DisplayFrame& fr) {
+    sink.on_frame = [this](const Frame& fr) {
       frames.push_back(fr);
       unchanged.push_back(sink.unchanged());
     };
@@ -46,7 +46,7 @@ struct Feed {
   std::array<std::uint8_t, kActiveBytes> bytes{};
   std::uint8_t salt = 0;
   FrameAssembler sink;
-  std::vector<DisplayFrame> frames;
+  std::vector<Frame> frames;
   std::vector<bool> unchanged;  // of each frame, against the one before
 };
 

@@ -71,7 +71,8 @@ void FrameAssembler::line(const DisplayLine& line) {
     rows_ = 0;
     if (frame_.picture.width != kActivePixels || frame_.picture.height != place.rows)
       frame_.picture = Picture(kActivePixels, place.rows);
-    frame_.start = line.start;
+    frame_.times = {};
+    frame_.times.display_start = line.start;
   }
   if (!open_) return;
   const int row = place.row(line.f, line.number);
@@ -90,8 +91,8 @@ void FrameAssembler::line(const DisplayLine& line) {
     ++broken_;
     return;
   }
-  frame_.index = frames_++;
-  frame_.end = line.end;
+  frame_.times.index = frames_++;
+  frame_.times.display_end = line.end;
   if (on_frame) on_frame(frame_);
   std::swap(previous_, frame_.picture);
 }

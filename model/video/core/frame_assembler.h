@@ -7,7 +7,7 @@
 
 #include "model/common/units.h"
 #include "model/video/core/bt656.h"
-#include "model/video/core/picture.h"
+#include "model/video/core/frame.h"
 
 namespace fovea::video {
 
@@ -20,22 +20,15 @@ struct DisplayLine {
   const std::uint8_t* uyvy;  ///< kActiveBytes bytes, valid during the call; null: a black line
 };
 
-/// A complete displayed frame.
-struct DisplayFrame {
-  std::uint64_t index;                   ///< number of frames completed before it
-  Picoseconds start, end;                ///< start of its first sample and end of its last row
-  Picture picture;                       ///< 720 x 576, or 720 x 480 or 486 pixels
-  unsigned underflows = 0;               ///< bursts of this frame that arrived too late; from the OSD
-};
-
 /// Assembles frames of 576 or 480 rows (for 525/60 the first 240 active lines of each field, or 243: `rows_525`).
 /// Checks that lines come in the order of the standard with the right field bit, that they have the
 /// right length, and that they start at the line period of a 27 MHz byte clock (within 2 ps of an
 /// uninterrupted count, because edges are rounded down).
 class FrameAssembler {
  public:
-  /// Called for each whole frame; who receives it may complete it.
-  std::function<void(DisplayFrame&)> on_frame;
+  /// Called for each whole frame with its picture, the times of its display and, as its index, the number of frames
+  /// before it. Who receives it may complete it.
+  std::function<void(Frame&)> on_frame;
   unsigned rows_525 = 480;  ///< rows of a picture in 525/60: 480, or the 486 of all lines that both fields have
 
   void line(const DisplayLine& line);
@@ -62,7 +55,7 @@ class FrameAssembler {
 
   bool open_ = false;
   unsigned rows_ = 0;  // rows of the current frame received so far
-  DisplayFrame frame_{};
+  Frame frame_;
   Picture previous_;
 
   std::uint64_t frames_ = 0, broken_ = 0, violations_ = 0;

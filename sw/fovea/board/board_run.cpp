@@ -109,8 +109,7 @@ class BoardSimulation : public Simulation {
   std::vector<EndCondition> end_conditions(const RunRequest& request) const;
   void build_board(const ElfImage& elf, const CameraInputs& cameras, const RunRequest& request);
   void open_outputs(const CameraInputs& cameras, const RunRequest& request);
-  void take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
-                  const board::FrameRecord& r);
+  void take_frame(Session& s, const CameraInputs& cameras, const video::Frame& frame);
   void attach_profile(Session& s);
   void attach_host(Session& s);
   Picoseconds next_slice(Session& s) const;
@@ -136,7 +135,6 @@ class BoardSimulation : public Simulation {
   std::unique_ptr<MosaicScore> mosaic_score_;
   std::unique_ptr<PictureScore> picture_score_;
   std::unique_ptr<RunProfile> profile_;
-  std::vector<FrameRow> frames_;
 };
 
 void BoardSimulation::open_window() {
@@ -331,36 +329,19 @@ void BoardSimulation::open_outputs(const CameraInputs& cameras, const RunRequest
 }
 
 /// A displayed frame goes to whoever wants it. An error of a writer is kept and stops the run.
-void BoardSimulation::take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
-                                 const board::FrameRecord& r) {
-  if (mosaic_score_) mosaic_score_->displayed(f);
-  const CameraInputs::Sent sent = cameras.sent(*board_, r);
-  if (picture_score_) picture_score_->displayed(f, r.camera, sent);
-  FrameRow out;
-  out.index = r.index;
-  out.camera = r.camera;
-  out.captured = r.captured;
-  out.capture_start = r.capture_start;
-  out.capture_end = r.capture_end;
-  out.remap_start = r.remap_start;
-  out.remap_end = r.remap_end;
-  out.display_start = r.display_start;
-  out.display_end = r.display_end;
-  out.dropped = r.dropped;
-  out.repeated = r.repeated;
+void BoardSimulation::take_frame(Session& s, const CameraInputs& cameras, const video::Frame& frame) {
+  if (mosaic_score_) mosaic_score_->displayed(frame);
+  const CameraInputs::Sent sent = cameras.sent(*board_, frame.times);
+  if (picture_score_) picture_score_->displayed(frame, sent);
   if (s.failure) return;
-  if (profile_) profile_->frame(out);
+  if (profile_) profile_->frame(frame.times);
+  const PixelShape pixel = pixel_on_screen(params_.video);
   try {
-    if (perfetto_) perfetto_->frame(f, r);
-    if (s.request.frame_row)
-      s.request.frame_row(out);
-    else
-      frames_.push_back(out);
-    if (s.request.frame)
-      s.request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy, pixel_on_screen(params_.video)});
-    if (s.request.camera && sent.picture)
-      s.request.camera({r.index, sent.picture->width, sent.picture->height, sent.picture->uyvy,
-                        params_.video.format().digital ? PixelShape{} : pixel_on_screen(params_.video)});
+    if (perfetto_) perfetto_->frame(frame);
+    for (FrameSink* sink : s.request.frames) sink->displayed(frame, pixel);
+    for (FrameSink* sink : s.request.frames)
+      if (sent.picture && sink->wants_sent())
+        sink->sent(frame.times.index, *sent.picture, params_.video.format().digital ? PixelShape{} : pixel);
   } catch (...) {
     s.failure = std::current_exception();
   }
@@ -522,7 +503,6 @@ void BoardSimulation::collect(Session& s, RunResult& result) {
     s.hazards->collect(result.stats);
     result.hazards = s.hazards->failure();
   }
-  result.frames = std::move(frames_);
   result.uart = board_->uart_text();
   result.kernel = kernel_that_ran(params_, result.uart);
   for (std::size_t i = 0; i < board_->resets().size(); ++i)
@@ -542,7 +522,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
   RunResult result;
-  const bool keep = request.camera || PictureScore::possible(params_);
+  const bool keep = std::ranges::any_of(request.frames, &FrameSink::wants_sent) || PictureScore::possible(params_);
   const CameraInputs cameras(params_, keep, request.stop, result.notes);
   build_board(elf, cameras, request);
   open_outputs(cameras, request);
@@ -550,9 +530,7 @@ RunResult BoardSimulation::run(const RunRequest& request) {
   if (request.console || dialogue)
     session.console.emplace(*board_, request.console, std::move(dialogue));
   const Subscription frames =
-      board_->observe_frames([&](const video::DisplayFrame& f, const board::FrameRecord& r) {
-        take_frame(session, cameras, f, r);
-      });
+      board_->observe_frames([&](const video::Frame& frame) { take_frame(session, cameras, frame); });
   if (!session.wants_frames()) board_->measure_whole_run();
   attach_profile(session);
   attach_host(session);

@@ -52,7 +52,6 @@ ExecResult run_on_board(Simulation& board, const ParamSet& params, const ExecOpt
                  .hazards = o.hazards,
                  .stop = request.stop,
                  .progress = *request.progress,
-                 .frame = {},
                  .gdb_port = request.gdb_port,
                  .notes = &request.notes,
                  .registers = request.registers,

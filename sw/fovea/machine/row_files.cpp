@@ -8,13 +8,13 @@ RowFiles::RowFiles(RunDir& dir)
 }
 
 void RowFiles::attach(RunRequest& request) {
-  request.frame_row = [this](const FrameRow& row) { frame(row); };
+  request.frames.push_back(this);
   request.timeline_row = [this](std::span<const std::string> masters, const TimelineRow& row) {
     timeline(masters, row);
   };
 }
 
-void RowFiles::frame(const FrameRow& row) { frames_->write(frames_csv_line(row)); }
+void RowFiles::displayed(const video::Frame& frame, PixelShape) { frames_->write(frames_csv_line(frame.times)); }
 
 void RowFiles::timeline(std::span<const std::string> masters, const TimelineRow& row) {
   timeline_header(masters);
@@ -27,7 +27,6 @@ void RowFiles::timeline_header(std::span<const std::string> masters) {
 }
 
 void RowFiles::finish(const RunResult& result) {
-  for (const FrameRow& row : result.frames) frame(row);
   timeline_header(result.timeline_masters);
   for (const TimelineRow& row : result.timeline) timeline(result.timeline_masters, row);
   frames_->close();

@@ -10,17 +10,17 @@
 namespace fovea::app {
 
 /// Writes rows when they become final, so that memory does not grow with the length of the run.
-class RowFiles {
+class RowFiles : public FrameSink {
  public:
   /// Creates both files. @throws UserError
   explicit RowFiles(RunDir& dir);
   /// Lets the board deliver its rows to this object, which must outlive the run of `request`.
   void attach(RunRequest& request);
+  void displayed(const video::Frame& frame, PixelShape pixel) override;
   /// Writes the rows that are part of the result, and closes the files. @throws UserError
   void finish(const RunResult& result);
 
  private:
-  void frame(const FrameRow& row);
   void timeline(std::span<const std::string> masters, const TimelineRow& row);
   void timeline_header(std::span<const std::string> masters);
   std::unique_ptr<CheckedFile> frames_, timeline_;

@@ -15,9 +15,9 @@
 #include "model/common/param.h"
 #include "sw/fovea/console/console.h"
 #include "sw/fovea/console/semihosting.h"
-#include "sw/fovea/files/rgb_image.h"
 #include "sw/fovea/files/run_limits.h"
 #include "sw/fovea/files/side_output.h"
+#include "sw/fovea/machine/frame_sink.h"
 #include "sw/fovea/machine/perfetto_request.h"
 #include "sw/fovea/program/elf_image.h"
 #include "sw/fovea/results/outputs.h"
@@ -26,14 +26,6 @@
 #include "sw/fovea/tools/slowest.h"
 
 namespace fovea::app {
-
-/// A displayed frame in 4:2:2: bytes Cb Y0 Cr Y1, no padding. Valid only during the call.
-struct DisplayedFrame {
-  std::uint64_t index = 0;
-  unsigned width = 0, height = 0;
-  std::span<const std::uint8_t> uyvy;
-  PixelShape pixel = {};
-};
 
 /// A program that is run by `fovea exec --board` instead of the camera's firmware.
 struct HostedProgram {
@@ -52,16 +44,10 @@ struct RunRequest {
   /// Set by a signal: the board ends the run soon and returns a result with complete = false.
   const std::atomic<bool>& stop;
   ProgressSink& progress;
-  /// Called for each displayed frame, in order; empty with --no-frames. May throw UserError (disk
-  /// full), which the board passes on.
-  std::function<void(const DisplayedFrame&)> frame;
+  std::vector<FrameSink*> frames = {};  ///< each gets every frame
   /// Called with rows when they become final, in order; the result contains the others. If empty,
   /// the result contains all rows. May throw UserError.
-  std::function<void(const FrameRow&)> frame_row = {};
   std::function<void(std::span<const std::string> masters, const TimelineRow&)> timeline_row = {};
-  /// Called for each displayed frame with what the camera sent of it, woven from its two fields; not for
-  /// a frame whose picture is not kept any more (one that is shown very late).
-  std::function<void(const DisplayedFrame&)> camera = {};
   PerfettoRequest perfetto = {};
   std::filesystem::path command_trace = {};  ///< file for the SDRAM's commands in the window; empty: none
   std::optional<Picoseconds> around = {};    ///< --around: list the SDRAM requests near this time; empty: do not
@@ -87,7 +73,6 @@ struct RunResult {
   std::string difference;      ///< not empty: two models of a block that ran side by side differ (exit 1)
   std::vector<StatRow> stats;  ///< for stats.json, in any order
   std::vector<StatRow> host;   ///< for host.json, in any order
-  std::vector<FrameRow> frames;
   std::vector<std::string> timeline_masters;
   std::vector<TimelineRow> timeline;
   std::vector<StallRow> stalls;
