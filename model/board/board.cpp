@@ -86,12 +86,15 @@ Board::Board(sc_core::sc_module_name name, const BoardParams& params,
     log.pins(out, at);
     phase_observers_.each([&](const PhaseObserver& f) { f(log.phase(), at); });
   });
-  dm365.isif.on_frame_end = [this](const video::CaptureFrame& f) {
-    if (f.complete) log.capture(f.index, f.start, f.end, f.source_camera[0]);
+  dm365.isif.on_frame_start = [this](const video::CaptureFrame& f) { capture_begins(f); };
+  dm365.isif.on_frame_end = [this](const video::CaptureFrame& f) { capture_ends(f); };
+  dm365.osd.on_latch = [this](const video::Osd::Latch& l) {
+    sink.latched(l);
+    latched(l);
   };
-  dm365.osd.on_latch = [this](const video::Osd::Latch& l) { latched(l); };
+  dm365.osd.on_late = [this](unsigned bursts) { sink.late(bursts); };
   if (!params.video.format().is_625) sink.assembler.rows_525 = params.raster_height();
-  sink.assembler.on_frame = [this](const video::DisplayFrame& f) { frame_shown(f); };
+  sink.on_frame = [this](video::Frame& f) { frame_shown(f); };
 }
 
 void Board::reset_asked(const std::string& cause) {
@@ -200,11 +203,25 @@ void Board::close_window_now() {
   window_observers_.each([](const WindowObserver& f) { f(false); });
 }
 
-void Board::frame_shown(const video::DisplayFrame& frame) {
-  if (!window_open() || frame.start < *window_start_) return;
-  const FrameRecord& r = log.shown(frame.start, frame.end);
+/// The capture knows no cameras: whose picture a frame begins with is asked of the decoder when it begins.
+void Board::capture_begins(const video::CaptureFrame& frame) {
+  constexpr std::size_t kMost = 8;  // those that begin and never end do not pile up
+  if (begun_.size() == kMost) begun_.erase(begun_.begin());
+  begun_.push_back({frame.start, digital ? 0 : decoder.on_wire().camera});
+}
+
+void Board::capture_ends(const video::CaptureFrame& frame) {
+  std::erase_if(begun_, [&](const Begun& b) { return b.start < frame.start; });
+  const bool known = !begun_.empty() && begun_.front().start == frame.start;
+  if (frame.complete)
+    log.capture(frame.index, frame.start, frame.end, known ? begun_.front().camera : video::kNoCamera);
+}
+
+void Board::frame_shown(video::Frame& frame) {
+  if (!window_open() || frame.times.display_start < *window_start_) return;
+  frame.times = log.shown(frame.times.display_start, frame.times.display_end);
   ++frames_in_window_;
-  frame_observers_.each([&](const FrameObserver& f) { f(frame, r); });
+  frame_observers_.each([&frame](const FrameObserver& f) { f(frame); });
   forget_old_frames();
 }
 
@@ -213,7 +230,7 @@ void Board::forget_old_frames() {
   constexpr std::size_t kKept = 256;
   struct Old {
     Board& board;
-    void operator()(const FrameRecord& r) { board.old_.add(r, true); }
+    void operator()(const video::FrameTimes& r) { board.old_.add(r, true); }
     void operator()(const FrameLog::Remap& m) {
       if (board.in_window(m.end)) board.old_.add(m);
     }
@@ -222,7 +239,7 @@ void Board::forget_old_frames() {
   log.forget(kKept, Old{*this});
 }
 
-void FrameSums::add(const FrameRecord& r, bool whole) {
+void FrameSums::add(const video::FrameTimes& r, bool whole) {
   ++stats.displayed;
   if (r.repeated || !r.captured) {
     ++stats.repeated;
@@ -230,7 +247,7 @@ void FrameSums::add(const FrameRecord& r, bool whole) {
     return;
   }
   fresh += whole;
-  if (r.camera != kNoCamera) {
+  if (r.camera != video::kNoCamera) {
     if (cameras.size() <= r.camera) cameras.resize(r.camera + 1);
     cameras[r.camera].add(r, whole);
   }
@@ -243,7 +260,7 @@ void FrameSums::add(const FrameRecord& r, bool whole) {
   ++stats.latencies;
 }
 
-void CameraSums::add(const FrameRecord& r, bool whole) {
+void CameraSums::add(const video::FrameTimes& r, bool whole) {
   fresh += whole;
   if (!r.capture_start) return;
   const Picoseconds t = r.display_start - *r.capture_start;
@@ -263,7 +280,7 @@ void FrameSums::add(const FrameLog::Remap& m) {
 
 std::vector<CameraFrameStats> Board::camera_stats() const {
   FrameSums sums = old_;
-  for (const FrameRecord& r : log.records()) sums.add(r, r.display_start < whole_until_);
+  for (const video::FrameTimes& r : log.records()) sums.add(r, r.display_start < whole_until_);
   sums.cameras.resize(params_.input_count());
   std::vector<CameraFrameStats> out(params_.input_count());
   for (std::size_t n = 0; n < out.size(); ++n) {
@@ -290,7 +307,7 @@ FrameStats Board::frame_stats() const {
   const Picoseconds from = *window_start_;
   const Picoseconds to = window_end_ ? *window_end_ : kernel_time();
   FrameSums sums = old_;
-  for (const FrameRecord& r : log.records()) sums.add(r, r.display_start < whole_until_);
+  for (const video::FrameTimes& r : log.records()) sums.add(r, r.display_start < whole_until_);
   for (const auto& m : log.remaps())
     if (m.end > from && m.end <= to) sums.add(m);
   FrameStats& s = sums.stats;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <systemc>
 #include <vector>
@@ -70,7 +71,7 @@ struct CameraSums {
   std::uint64_t fresh = 0, latencies = 0;
   Picoseconds latency_min = 0, latency_max = 0;
   double latency = 0;
-  void add(const FrameRecord& record, bool whole);
+  void add(const video::FrameTimes& frame, bool whole);
 };
 
 /// FrameStats in the making: the sums over the entries of the frame log.
@@ -80,7 +81,7 @@ struct FrameSums {
   double latency = 0, remap = 0;
   std::vector<CameraSums> cameras;
   /// `whole`: its display frame was out before the window's end.
-  void add(const FrameRecord& record, bool whole);
+  void add(const video::FrameTimes& frame, bool whole);
   void add(const FrameLog::Remap& remap);
 };
 
@@ -100,8 +101,8 @@ class Board : public sc_core::sc_module {
   /// Reads memory as the bus sees it now (not through the caches).
   std::vector<std::uint8_t> peek(std::uint32_t address, std::size_t bytes);
 
-  /// Called for each frame shown inside the window, in order.
-  using FrameObserver = std::function<void(const video::DisplayFrame&, const FrameRecord&)>;
+  /// Called for each frame shown inside the window, in order. Its index counts those frames.
+  using FrameObserver = std::function<void(const video::Frame&)>;
   Subscription observe_frames(FrameObserver observer) { return frame_observers_.add(std::move(observer)); }
   /// Called at each change of the pins that show the phase, also if the phase stays.
   using PhaseObserver = std::function<void(Phase, Picoseconds at)>;
@@ -160,7 +161,9 @@ class Board : public sc_core::sc_module {
   void place_multiplexer();
   void set_switches();
   void latched(const video::Osd::Latch& latch);
-  void frame_shown(const video::DisplayFrame& frame);
+  void capture_begins(const video::CaptureFrame& frame);
+  void capture_ends(const video::CaptureFrame& frame);
+  void frame_shown(video::Frame& frame);
   void forget_old_frames();
   bool in_window(Picoseconds t) const {
     return t > *window_start_ && (!window_end_ || t <= *window_end_);
@@ -171,7 +174,8 @@ class Board : public sc_core::sc_module {
   ClockSignal decoder_clk_{"decoder_clk", Frequency(27'000'000)};
   ClockSignal digital_clk_{"digital_clk"};
   struct NoReceiver : video::Bt656If {
-    void line(const video::Bt656Line&) override {}
+    bool begin_line(const video::Bt656Line&) override { return false; }
+    void take_line(std::span<const std::uint8_t>) override {}
   } no_receiver_;
   std::string uart_;
   Observers<UartObserver> uart_observers_;
@@ -182,6 +186,11 @@ class Board : public sc_core::sc_module {
   std::uint64_t wanted_;  // frames; 0: the window does not end with a frame
   std::uint64_t frames_in_window_ = 0;
   bool opening_ = false;
+  struct Begun {
+    Picoseconds start;
+    unsigned camera;
+  };
+  std::vector<Begun> begun_;  ///< the latest captures whose end has not come
   std::optional<ChipReset> chip_reset_;
   std::vector<ChipReset> resets_;
   std::vector<LoadImage> boot_images_;

@@ -4,9 +4,11 @@
 
 namespace fovea::board {
 
-void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end, int camera) {
+using video::kNoCamera;
+
+void FrameLog::capture(std::uint64_t index, Picoseconds start, Picoseconds end, unsigned camera) {
   index += first_capture_;
-  captured_[index] = {start, end, camera < 0 ? kNoCamera : static_cast<unsigned>(camera)};
+  captured_[index] = {start, end, camera};
   next_capture_ = index + 1;
   capture_ends_.push_back(end);
   // Only the recent past can still be shown; the history is in records_.
@@ -133,8 +135,8 @@ bool FrameLog::awaits_syncs(Picoseconds start) const {
   return newer == 1 || (newer == 0 && start <= synced_ + 2 * period);
 }
 
-const FrameRecord& FrameLog::shown(Picoseconds start, Picoseconds end) {
-  FrameRecord r;
+const video::FrameTimes& FrameLog::shown(Picoseconds start, Picoseconds end) {
+  video::FrameTimes r;
   r.index = shown_++;
   r.captured = showing_;
   r.display_start = start;

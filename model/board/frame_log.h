@@ -8,6 +8,7 @@
 
 #include "model/common/units.h"
 #include "model/contract/phases.h"
+#include "model/video/core/frame.h"
 
 namespace fovea::board {
 
@@ -19,28 +20,13 @@ enum class Phase : std::uint8_t {
 };
 constexpr Phase phase_of(std::uint32_t pins) { return static_cast<Phase>(PHASE_OF(pins)); }
 
-/// A frame of no camera: none was locked when it was captured.
-inline constexpr unsigned kNoCamera = ~0u;
-
-/// One displayed frame and the way of the captured frame that it shows.
-struct FrameRecord {
-  std::uint64_t index = 0;                       ///< displayed frame since the first corrected one
-  std::optional<std::uint64_t> captured;         ///< number of the captured frame
-  std::optional<Picoseconds> capture_start, capture_end, remap_start, remap_end;
-  Picoseconds display_start = 0, display_end = 0;
-  std::uint64_t dropped = 0;  ///< captured frames skipped since the record before
-  bool repeated = false;
-  bool relock = false;  ///< repeated, but no newer frame could be on show yet: the decoder had to find the syncs
-  unsigned camera = kNoCamera;  ///< whose frame it shows; kNoCamera: a black one
-};
-
 /// A sequence number is the count of complete captures since the last reset, modulo 256; it is unrolled
 /// against the captures that the model has seen. The log numbers the captures of the whole run.
 class FrameLog {
  public:
   /// @param index number of the capture since the last reset
-  /// @param camera whose picture it began with; negative: none
-  void capture(std::uint64_t index, Picoseconds start, Picoseconds end, int camera = 0);
+  /// @param camera whose picture it began with
+  void capture(std::uint64_t index, Picoseconds start, Picoseconds end, unsigned camera = 0);
   void pins(std::uint32_t levels, Picoseconds at);
   /// The display begins a frame and will show this buffer. True if it shows a frame that the
   /// firmware has flipped to.
@@ -49,8 +35,8 @@ class FrameLog {
   void decoder(Picoseconds synced_at) { synced_ = synced_at; }
   /// The chip is reset: capture and firmware count from 0 again. What is in the log stays.
   void restart();
-  /// The frame whose latch was the last one is out.
-  const FrameRecord& shown(Picoseconds start, Picoseconds end);
+  /// The frame whose latch was the last one is out. Its index counts from the first one on.
+  const video::FrameTimes& shown(Picoseconds start, Picoseconds end);
 
   Phase phase() const { return phase_; }
   /// When a phase was entered first; nothing if it was not.
@@ -58,7 +44,7 @@ class FrameLog {
     return first_[static_cast<std::size_t>(phase)];
   }
   /// Frames shown, in order, but for those that were forgotten.
-  const std::vector<FrameRecord>& records() const { return records_; }
+  const std::vector<video::FrameTimes>& records() const { return records_; }
   /// Remaps that ended, and how long each took, in order; the same.
   struct Remap {
     std::uint64_t captured;
@@ -124,7 +110,7 @@ class FrameLog {
   std::optional<std::uint64_t> running_, flipped_, showing_, last_shown_;
   std::optional<std::uint32_t> address_;
   Picoseconds remap_start_ = 0, synced_ = 0;
-  std::vector<FrameRecord> records_;
+  std::vector<video::FrameTimes> records_;
   std::uint64_t shown_ = 0;
 };
 

@@ -31,12 +31,11 @@ void DigitalCamera::clock_changed() {
 
 void DigitalCamera::send_line() {
   const std::uint64_t first = origin_ + next_line_ * standard_.line_bytes;
-  position_ = locate(standard_, next_line_);
-  const Standard::Lines& fv = standard_.at(position_.line);
+  const LinePosition at = locate(standard_, next_line_);
+  const Standard::Lines& fv = standard_.at(at.line);
   ++next_line_;
   line_timer_.at(edges_.edge(first + standard_.line_bytes));
-  video->line({&standard_, &edges_, edges_.edge(first), first, position_.field, position_.line,
-               encode_xy(fv.f, fv.v, true), encode_xy(fv.f, fv.v, false), this, 0});
+  if (video->begin_line({&standard_, &edges_, first, encode_xy(fv.f, fv.v, true)})) video->take_line(compose(at));
 }
 
 std::uint64_t DigitalCamera::source_field(Picoseconds now) const {
@@ -44,13 +43,13 @@ std::uint64_t DigitalCamera::source_field(Picoseconds now) const {
   return 2 * locate(standard_, (edges_.edge_after(now) - 1 - origin_) / standard_.line_bytes).field;
 }
 
-std::span<const std::uint8_t> DigitalCamera::render() {
-  const Standard::Lines& fv = standard_.at(position_.line);
+std::span<const std::uint8_t> DigitalCamera::compose(LinePosition at) {
+  const Standard::Lines& fv = standard_.at(at.line);
   const std::uint8_t* row = nullptr;
   if (!fv.v) {
-    if (!picture_ || picture_frame_ != position_.field) picture_ = &source_.field(2 * position_.field);
-    picture_frame_ = position_.field;
-    row = picture_->row(position_.line - standard_.active_first[0]);
+    if (!picture_ || picture_frame_ != at.field) picture_ = &source_.field(2 * at.field);
+    picture_frame_ = at.field;
+    row = picture_->row(at.line - standard_.active_first[0]);
   }
   const std::span<std::uint8_t> out(bytes_.data(), standard_.line_bytes);
   compose_line(standard_, encode_xy(fv.f, fv.v, true), encode_xy(fv.f, fv.v, false), row, out);

@@ -15,7 +15,7 @@ namespace fovea::video {
 /// phase on, one field after another, with F = 0. Frame k shows what its source has for field 2 k, so that film and
 /// motion run as fast as with an interlaced camera of the same frame rate. Its byte clock is the pixel clock of the
 /// port (PCLK), two periods a pixel. Not modelled: the sensor's registers, separate syncs.
-class DigitalCamera : public sc_core::sc_module, private Bt656Renderer {
+class DigitalCamera : public sc_core::sc_module {
  public:
   ClockIn clock{"clock"};  ///< byte clock
   sc_core::sc_port<Bt656If> video{"video"};
@@ -32,7 +32,7 @@ class DigitalCamera : public sc_core::sc_module, private Bt656Renderer {
  private:
   void clock_changed();
   void send_line();
-  std::span<const std::uint8_t> render() override;
+  std::span<const std::uint8_t> compose(LinePosition at);
 
   const Standard& standard_;
   PictureSource& source_;
@@ -41,7 +41,6 @@ class DigitalCamera : public sc_core::sc_module, private Bt656Renderer {
   bool started_ = false;
   std::uint64_t origin_ = 0;     // edge at which line 0 begins
   std::uint64_t next_line_ = 0;  // counted from the first one
-  LinePosition position_{};
   const Picture* picture_ = nullptr;  // of frame picture_frame_; asked for once per frame
   std::uint64_t picture_frame_ = 0;
   Timer line_timer_;

@@ -86,11 +86,11 @@ void Isif::latch(const Standard& standard) {
   setup_.pitch = regs.hsize.lofst.get() * 32;
 }
 
-void Isif::line(const Bt656Line& l) {
+bool Isif::begin_line(const Bt656Line& l) {
   if (!clocked() || !regs.syncen.vdhden) {
     synced_ = false;
     line_ = 0;
-    return;
+    return false;
   }
   issue(kernel_time());  // the last burst of the previous line may be due at this very time
 
@@ -112,7 +112,7 @@ void Isif::line(const Bt656Line& l) {
   } else if (line_ != 0) {
     ++line_;
   }
-  if (line_ == 0) return;
+  if (line_ == 0) return false;
 
   const IsifRegs::Number15* const lines[] = {&regs.vdint0, &regs.vdint1, &regs.vdint2};
   for (unsigned i = 0; i < 3; ++i)
@@ -120,7 +120,7 @@ void Isif::line(const Bt656Line& l) {
 
   if (regs.ccdcfg.vdlc) latch(*l.standard);
   const unsigned first = setup_.first_line[field_];
-  if (setup_.write && line_ >= first && line_ - first < setup_.lines) begin_row(l, line_ - first);
+  return setup_.write && line_ >= first && line_ - first < setup_.lines && begin_row(l, line_ - first);
 }
 
 void Isif::begin_field(const Bt656Line& l) {
@@ -130,24 +130,30 @@ void Isif::begin_field(const Bt656Line& l) {
   if (!setup_.write) frame_open_ = false;  // the second field of this frame will not be captured
 }
 
-void Isif::begin_row(const Bt656Line& l, unsigned index) {
-  if (setup_.bytes == 0) return;
-  // Of a short line only what came is written; memory keeps what it had of the rest.
-  const unsigned skipped = l.standard->active_offset() + setup_.sph + l.missing;
-  const unsigned came = l.standard->line_bytes > skipped ? l.standard->line_bytes - skipped : 0;
+/// False if nothing of the line is captured.
+bool Isif::begin_row(const Bt656Line& l, unsigned index) {
+  if (setup_.bytes == 0) return false;
   const bool place = field_ != setup_.fiinv;
   if (index == 0)
     row_offset_ = setup_.interlaced && place ? static_cast<int>(regs.sdofst.fofst.get()) + 1 : 0;
   else
     row_offset_ += regs.sdofst.step(place, index - 1);
   row_address_ = setup_.address + static_cast<std::uint32_t>(row_offset_) * setup_.pitch;
-  row_first_sample_ = l.first_sample + l.standard->active_offset() + setup_.sph;
+  row_skipped_ = l.standard->active_offset() + setup_.sph;
+  row_first_sample_ = l.first_sample + row_skipped_;
   row_clock_ = l.clock;
-  row_bytes_ = std::min(setup_.bytes, came & ~3u);
-  row_pos_ = 0;
+  row_bytes_ = row_pos_ = 0;  // until they come
+  first_row_ = index == 0;
   last_row_ = index + 1 == setup_.lines;
+  return true;
+}
 
-  const std::uint8_t* from = l.bytes().data() + l.standard->active_offset() + setup_.sph;
+void Isif::take_line(std::span<const std::uint8_t> bytes) {
+  // Of a short line only what came is written; memory keeps what it had of the rest.
+  const auto size = static_cast<unsigned>(bytes.size());
+  const unsigned came = size > row_skipped_ ? size - row_skipped_ : 0;
+  row_bytes_ = std::min(setup_.bytes, came & ~3u);
+  const std::uint8_t* from = bytes.data() + row_skipped_;
   if (setup_.swap) {
     for (unsigned i = 0; i < row_bytes_; i += 2) {
       row_[i] = from[i + 1];
@@ -159,24 +165,23 @@ void Isif::begin_row(const Bt656Line& l, unsigned index) {
   if (setup_.invert_chroma)
     for (unsigned i = setup_.swap ? 1 : 0; i < row_bytes_; i += 2) row_[i] ^= 0x80;
 
-  if (index == 0) {
-    const bool begins = !field_ || !setup_.interlaced;
-    if (begins || !frame_open_) {
-      frame_ = CaptureFrame{};
-      frame_.index = frame_index_;
-      frame_.start = row_clock_->edge(row_first_sample_);
-      frame_.complete = begins;
-      frame_open_ = true;
-    }
-    frame_.address[field_] = setup_.address;
-    frame_.source_field[field_] = l.field_index;
-    frame_.source_camera[field_] = l.camera;
-    if (begins || !frame_.complete) {
-      if (on_frame_start) on_frame_start(frame_);
-    }
-  }
+  if (first_row_) begin_frame();
   if (row_bytes_ == 0 && last_row_) end_field(kernel_time());
   issue(kernel_time());
+}
+
+/// The first row of a field begins, which is a frame's second one if its first one was captured.
+void Isif::begin_frame() {
+  const bool begins = !field_ || !setup_.interlaced;
+  if (begins || !frame_open_) {
+    frame_ = CaptureFrame{};
+    frame_.index = frame_index_;
+    frame_.start = row_clock_->edge(row_first_sample_);
+    frame_.complete = begins;
+    frame_open_ = true;
+  }
+  frame_.address[field_] = setup_.address;
+  if ((begins || !frame_.complete) && on_frame_start) on_frame_start(frame_);
 }
 
 /// Issues the bursts of the row for which a buffer slot is certainly free when their last byte

@@ -34,10 +34,8 @@ struct CaptureFrame {
   bool complete = false;    ///< false if only the second field was captured
   Picoseconds start = 0;    ///< time at which the first captured sample is on the wire
   Picoseconds end = 0;      ///< time at which all data are in memory (last write acknowledged)
-  std::array<std::uint32_t, 2> address{};       ///< buffer address of each field
-  std::array<std::uint64_t, 2> source_field{};  ///< the camera's field number of each field
-  std::array<int, 2> source_camera{kNoCamera, kNoCamera};  ///< whose picture the field began with
-  std::uint64_t overflows = 0;                  ///< bursts lost from this frame
+  std::array<std::uint32_t, 2> address{};  ///< buffer address of each field
+  std::uint64_t overflows = 0;             ///< bursts lost from this frame
 };
 
 /// ISIF with 8-bit BT.656 input.
@@ -64,7 +62,8 @@ class Isif : public WithRegs<IsifRegs>, public BusTarget, public Bt656If {
   sc_core::sc_in<bool> owns_write_buffer{"owns_write_buffer"};  ///< BCR.SRC_SEL_WB; latched
                                                                 ///< together with WEN
   CaptureStats stats;
-  /// Called at the first line of a frame, a little before its first captured sample.
+  /// Called at the first captured line of a frame, which is on the wire from now on: a little before its first
+  /// captured sample.
   std::function<void(const CaptureFrame&)> on_frame_start;
   /// Called when all data of a frame are in memory.
   std::function<void(const CaptureFrame&)> on_frame_end;
@@ -72,7 +71,8 @@ class Isif : public WithRegs<IsifRegs>, public BusTarget, public Bt656If {
   SC_HAS_PROCESS(Isif);
   Isif(sc_core::sc_module_name name, const VpssParams& params);
 
-  void line(const Bt656Line& line) override;
+  bool begin_line(const Bt656Line& line) override;
+  void take_line(std::span<const std::uint8_t> bytes) override;
   bool overflowed() const { return overflow_sticky_; }
   /// Address of the start of the last captured row; for tests.
   std::uint32_t row_address() const { return row_address_; }
@@ -99,7 +99,8 @@ class Isif : public WithRegs<IsifRegs>, public BusTarget, public Bt656If {
   void write_syncen();
   void latch(const Standard& standard);
   void begin_field(const Bt656Line& line);
-  void begin_row(const Bt656Line& line, unsigned index);
+  bool begin_row(const Bt656Line& line, unsigned index);
+  void begin_frame();
   void issue(Picoseconds now);
   void end_field(Picoseconds due);
   void arm_end();
@@ -115,11 +116,12 @@ class Isif : public WithRegs<IsifRegs>, public BusTarget, public Bt656If {
 
   std::array<std::uint8_t, kMaxActiveBytes> row_{};
   unsigned row_bytes_ = 0, row_pos_ = 0;
+  unsigned row_skipped_ = 0;  // bytes of its line before its first one
   std::uint32_t row_address_ = 0;
   int row_offset_ = 0;  // in rows from the start of the buffer
   std::uint64_t row_first_sample_ = 0;
   const Clock* row_clock_ = nullptr;
-  bool last_row_ = false;
+  bool first_row_ = false, last_row_ = false;  // of its field
   Timer end_timer_;
 
   std::uint64_t tag_ = 0, done_tag_ = 0;

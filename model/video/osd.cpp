@@ -82,9 +82,7 @@ void Osd::fetch(const Timing& timing) {
   line.start = timing.clock->edge(timing.first_active);
   line.end = timing.clock->edge(timing.first_active + kActiveBytes);
   line.fetched = kernel_time();
-  line.window = window_.on;
   line.swap_chroma = window_.swap_chroma;
-  line.address = window_.on ? window_.address : 0;
   line.bursts.clear();
   line.next = 0;
   if (window_.on) plan(line);
@@ -160,10 +158,10 @@ DisplayLine Osd::finish() {
       ++underflows;
   }
   if (underflows && params_.miscctl_6.is("dmang")) regs.miscctl.dmang.set(1);
+  if (underflows && on_late) on_late(underflows);
   if (line.swap_chroma)
     for (unsigned i = 0; i < kActiveBytes; i += 4) std::swap(out_[i], out_[i + 2]);
-  return {t.standard,  t.number,    t.f,          line.start, line.end,
-          out_.data(), line.window, line.address, underflows};
+  return {t.standard, t.number, t.f, line.start, line.end, out_.data()};
 }
 
 void Osd::stop() { finished_ = fetched_; }

@@ -28,8 +28,7 @@ class OsdLineIf : public virtual sc_core::sc_interface {
   virtual void field_start(const Standard& standard, bool f) = 0;
   /// Starts to fetch the line that will be displayed with this timing.
   virtual void fetch(const Timing& timing) = 0;
-  /// Returns the oldest line that was fetched and not yet finished, at the end of its display: its
-  /// pixels and the number of bursts that arrived too late.
+  /// Returns the oldest line that was fetched and not yet finished, at the end of its display.
   virtual DisplayLine finish() = 0;
   /// Discards all lines that were fetched and not finished.
   virtual void stop() = 0;
@@ -56,6 +55,8 @@ class Osd : public WithRegs<OsdRegs>, public BusTarget, public OsdLineIf {
   sc_core::sc_in<bool> psc_enabled{"psc_enabled"}, gate{"gate"};
   /// Called at each field start with the latched settings of window 0.
   std::function<void(const Latch&)> on_latch;
+  /// Called at the end of a displayed line with the number of its bursts that arrived too late; not if none did.
+  std::function<void(unsigned)> on_late;
 
   Osd(sc_core::sc_module_name name, const VpssParams& params);
 
@@ -85,9 +86,7 @@ class Osd : public WithRegs<OsdRegs>, public BusTarget, public OsdLineIf {
     Picoseconds fetched = 0;         // time at which its reads begin
     Picoseconds start = 0, end = 0;  // start and end of its active part, by the clock at the time
                                      // of the fetch
-    bool window = false;
     bool swap_chroma = false;
-    std::uint32_t address = 0;
     std::vector<Burst> bursts;
     unsigned next = 0;  // first burst that was not issued yet
     std::array<std::uint8_t, kActiveBytes> bytes{};

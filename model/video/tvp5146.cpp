@@ -1,5 +1,6 @@
 #include "model/video/tvp5146.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "model/common/burst_master.h"
@@ -166,40 +167,30 @@ void Tvp5146::send_line() {
   leave_lines_out();
   const SignalFault& fault = camera.fault;
   const std::uint64_t first = camera.line_edge(next_line_);
-  position_ = camera.position(next_line_);
-  fv_ = camera.standard().at(position_.line);
-  wrong_bits_ = fault.wrong_bits && next_line_ % fault.every == 0
-                    ? wrong_bits(fault.wrong_bits, damaged_++)
-                    : std::uint8_t{0};
-  const unsigned middle = camera.standard().middle(position_.field % 2);
-  const bool is_short = position_.line >= middle && position_.line - middle < fault.lines;
-  const unsigned missing = is_short ? fault.samples : 0;
-  if (missing) camera.leave_out(missing);
-  count_line();
-  line_camera_ = raster_;
-  line_shows_ = shows(locked(position_.field));
-  const Bt656Line line{&camera.standard(),
-                       &of,
-                       of.edge(first),
-                       first,
-                       position_.field,
-                       position_.line,
-                       eav(),
-                       sav(),
-                       this,
-                       line_shows_ == Shows::kPicture ? static_cast<int>(raster_) : kNoCamera,
-                       missing};
+  const LinePosition at = camera.position(next_line_);
+  const unsigned middle = camera.standard().middle(at.field % 2);
+  const bool is_short = at.line >= middle && at.line - middle < fault.lines;
+  const Line line{camera,
+                  at,
+                  camera.standard().at(at.line),
+                  shows(locked(at.field)),
+                  fault.wrong_bits && next_line_ % fault.every == 0 ? wrong_bits(fault.wrong_bits, damaged_++)
+                                                                    : std::uint8_t{0},
+                  is_short ? fault.samples : 0};
+  if (line.missing) camera.leave_out(line.missing);
+  count_line(at.line);
+  on_wire_ = {line.shows == Shows::kPicture ? static_cast<unsigned>(raster_) : kNoCamera, at.field};
   ++lines_sent_;
   ++next_line_;
   line_end_ = of.edge(camera.line_edge(next_line_));
   line_timer_.at(line_end_);
-  video->line(line);
+  if (video->begin_line({&camera.standard(), &of, first, line.code(true)})) video->take_line(compose(line));
 }
 
-/// The line at position_ is sent. The number of lines of a frame is known some lines after its end.
-void Tvp5146::count_line() {
+/// A line is sent. The number of lines of a frame is known some lines after its end.
+void Tvp5146::count_line(unsigned number) {
   const Standard& s = raster().standard();
-  if (position_.line == s.field_start[0]) {
+  if (number == s.field_start[0]) {
     counted_[0] = lines_in_frame_;
     lines_in_frame_ = 0;
   }
@@ -236,28 +227,30 @@ void Tvp5146::fill_with_noise() {
   }
 }
 
-std::span<const std::uint8_t> Tvp5146::render() {
-  const std::uint8_t* active = nullptr;
-  CameraSignal& camera = cameras_[line_camera_];
-  if (!fv_.v) {
-    static constexpr std::uint8_t kBlack[4] = {0x80, 0x10, 0x80, 0x10};
-    for (unsigned i = 0; i < kActiveBytes; i += 4) std::memcpy(row_.data() + i, kBlack, 4);
-    if (line_shows_ == Shows::kNoise) fill_with_noise();
-    // A smaller picture is centred, on lines of the same field and on whole pixel pairs.
-    const int shown = camera.placement().row(fv_.f, position_.line);
-    const int above = static_cast<int>(camera.placement().rows) - static_cast<int>(camera.height());
-    const int row = shown - above / 4 * 2;  // above < 0: after a change of the standard
-    if (shown >= 0 && row >= 0 && row < static_cast<int>(camera.height()) &&
-        line_shows_ == Shows::kPicture) {
-      const Picture& picture = camera.picture(position_.field);
-      std::memcpy(row_.data() + (kActivePixels - picture.width) / 2 * 2,
-                  picture.row(static_cast<unsigned>(row)), picture.row_bytes());
-    }
-    active = row_.data();
+/// Its kActiveBytes samples; null: the line is blanked.
+const std::uint8_t* Tvp5146::active_part(const Line& line) {
+  if (line.fv.v) return nullptr;
+  static constexpr std::uint8_t kBlack[4] = {0x80, 0x10, 0x80, 0x10};
+  for (unsigned i = 0; i < kActiveBytes; i += 4) std::memcpy(row_.data() + i, kBlack, 4);
+  if (line.shows == Shows::kNoise) fill_with_noise();
+  // A smaller picture is centred, on lines of the same field and on whole pixel pairs.
+  CameraSignal& camera = line.camera;
+  const int shown = camera.placement().row(line.fv.f, line.at.line);
+  const int above = static_cast<int>(camera.placement().rows) - static_cast<int>(camera.height());
+  const int row = shown - above / 4 * 2;  // above < 0: after a change of the standard
+  if (shown >= 0 && row >= 0 && row < static_cast<int>(camera.height()) && line.shows == Shows::kPicture) {
+    const Picture& picture = camera.picture(line.at.field);
+    std::memcpy(row_.data() + (kActivePixels - picture.width) / 2 * 2, picture.row(static_cast<unsigned>(row)),
+                picture.row_bytes());
   }
-  const std::span<std::uint8_t> out(bytes_.data(), camera.standard().line_bytes);
-  compose_line(camera.standard(), eav(), sav(), active, out);
-  return out;
+  return row_.data();
+}
+
+std::span<const std::uint8_t> Tvp5146::compose(const Line& line) {
+  const Standard& s = line.camera.standard();
+  const std::span<std::uint8_t> out(bytes_.data(), s.line_bytes);
+  compose_line(s, line.code(true), line.code(false), active_part(line), out);
+  return out.first(s.line_bytes - std::min(line.missing, s.line_bytes));
 }
 
 bool Tvp5146::i2c_start(std::uint8_t address7, bool read) {

@@ -34,7 +34,7 @@ Placement placement_of(const Tvp5146Params& params, bool is_625);
 /// are sent, from one start of a first field to the next, also across a change of the input. Not modelled, with a
 /// warning (tvp5146_settings.h): picture controls, other output formats than BT.656, square pixels. Not modelled: the
 /// two low bits of the 10-bit output, VBI data, the time that the I2C patch takes.
-class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Renderer {
+class Tvp5146 : public sc_core::sc_module, public I2cTargetIf {
  public:
   ClockIn clock{"clock"};  ///< byte clock, nominally 27 MHz
   sc_core::sc_port<Bt656If> video{"video"};
@@ -79,9 +79,14 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   /// time with relock_fields = 0, unless they are in step with those before. 0: it has been locked from the start.
   Picoseconds synced_at() const { return lock() ? synced_at_ : kernel_time(); }
   std::uint64_t lines_sent() const { return lines_sent_; }
+  /// What the line shows that is on the wire. The wire does not say it: for observers.
+  struct OnWire {
+    unsigned camera = kNoCamera;  ///< kNoCamera: black or noise
+    std::uint64_t field = 0;      ///< of the camera in whose raster it is
+  };
+  const OnWire& on_wire() const { return on_wire_; }
 
  private:
-  std::span<const std::uint8_t> render() override;
   void clock_changed();
   void send_line();
   void schedule();
@@ -98,7 +103,7 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   void warn(std::uint8_t index, std::uint8_t value) const;
   void relock(bool other_syncs = false);
   bool in_step(std::size_t camera, std::size_t other) const;
-  void count_line();
+  void count_line(unsigned number);
   void finish_capture();
 
   const CameraSignal& raster() const { return cameras_[raster_]; }
@@ -107,13 +112,6 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   void change_input();
   bool sending() const { return started_ && !nominal_.stopped() && enabled(); }
   void leave_lines_out();
-  std::uint8_t eav() const {
-    return static_cast<std::uint8_t>(encode_xy(fv_.f, fv_.v, true) ^ wrong_bits_);
-  }
-  std::uint8_t sav() const {
-    return static_cast<std::uint8_t>(encode_xy(fv_.f, fv_.v, false) ^ wrong_bits_);
-  }
-
   const Tvp5146Params& params_;
   DiagnosticsRef diagnostics_ = DiagnosticsRef::current();
   std::vector<CameraSignal> cameras_;
@@ -145,11 +143,20 @@ class Tvp5146 : public sc_core::sc_module, public I2cTargetIf, private Bt656Rend
   Shows shows(bool locked) const;
   void fill_with_noise();
 
-  std::size_t line_camera_ = 0;  // whose raster the announced line is in
-  Shows line_shows_ = Shows::kBlack;
-  LinePosition position_{};
-  Standard::Lines fv_{};
-  std::uint8_t wrong_bits_ = 0;  // of the announced line's codes
+  /// A line that is sent.
+  struct Line {
+    CameraSignal& camera;  // whose raster it is in
+    LinePosition at;
+    Standard::Lines fv;
+    Shows shows;
+    std::uint8_t wrong_bits;  // of its codes
+    unsigned missing;         // samples at its end
+    std::uint8_t code(bool h) const { return static_cast<std::uint8_t>(encode_xy(fv.f, fv.v, h) ^ wrong_bits); }
+  };
+  const std::uint8_t* active_part(const Line& line);
+  std::span<const std::uint8_t> compose(const Line& line);
+
+  OnWire on_wire_;
   std::array<std::uint8_t, kActiveBytes> row_{};
   std::array<std::uint8_t, kMaxLineBytes> bytes_{};
 };

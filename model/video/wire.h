@@ -1,4 +1,4 @@
-// The two video links between blocks: BT.656 from the decoder, active lines to the display.
+// The two video links between blocks: BT.656 from decoder or camera to the capture, active lines to the display.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -10,38 +10,23 @@
 
 namespace fovea::video {
 
-/// Computes the bytes of a line on request.
-class Bt656Renderer {
- public:
-  virtual ~Bt656Renderer() = default;
-  /// All standard.line_bytes bytes of the line that was announced last; valid until the next line.
-  virtual std::span<const std::uint8_t> render() = 0;
-};
-
-/// A line that shows no camera's picture.
-inline constexpr int kNoCamera = -1;
-
-/// A line on the wire, announced at its first sample (EAV). Sample i is on the wire from clock edge
-/// first_sample + i to the next edge.
+/// The beginning of a line on the wire. Sample i is on the wire from clock edge first_sample + i to the next edge.
 struct Bt656Line {
-  const Standard* standard;
+  const Standard* standard;    ///< the raster that it is in
   const Clock* clock;          ///< the byte clock; outlives the call
-  Picoseconds start;           ///< time of edge first_sample
-  std::uint64_t first_sample;  ///< edge number of the EAV's first byte
-  std::uint64_t field_index;   ///< field number of the picture source; only for statistics and
-                               ///< tests
-  unsigned number;             ///< line number; only for statistics and tests: receivers count
-                               ///< lines themselves
-  std::uint8_t eav_xy, sav_xy;
-  Bt656Renderer* renderer;
-  int camera = kNoCamera;  ///< whose picture it shows; only for statistics and tests
-  unsigned missing = 0;    ///< samples that it lacks at its end: the next line comes so much earlier
-  std::span<const std::uint8_t> bytes() const { return renderer->render(); }
+  std::uint64_t first_sample;  ///< number of the present clock edge, that of the EAV's first byte
+  std::uint8_t eav_xy;         ///< the fourth byte of the EAV, in which bits may be wrong
 };
 
 class Bt656If : public virtual sc_core::sc_interface {
  public:
-  virtual void line(const Bt656Line& line) = 0;
+  /// A line begins now.
+  /// @return whether the receiver takes its bytes. Only then the sender composes them, and calls take_line() before
+  /// anything else happens.
+  virtual bool begin_line(const Bt656Line& line) = 0;
+  /// The bytes of the line that has just begun, EAV first: standard->line_bytes of them, or fewer where samples are
+  /// missing at its end, so that the next line comes earlier. Valid during the call.
+  virtual void take_line(std::span<const std::uint8_t> bytes) = 0;
 };
 
 class DisplayLineIf : public virtual sc_core::sc_interface {

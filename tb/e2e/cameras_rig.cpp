@@ -52,10 +52,10 @@ board::Board& CamerasRig::build() {
   for (const auto& s : elf_.segments())
     board_->load({s.address, s.data, s.memory_size - s.data.size()});
   board_->load({PARAM_PAGE_BASE, app::parameter_page(params, stamped)});
-  frames_ = board_->observe_frames([this](const video::DisplayFrame& f, const board::FrameRecord& r) {
-    if (keep && !keep(r)) return;
+  frames_ = board_->observe_frames([this](const video::Frame& f) {
+    if (keep && !keep(f.times)) return;
     const unsigned w = params.width(), h = params.height();
-    Shown s{crop(f.picture, (f.picture.width - w) / 2, (f.picture.height - h) / 2, w, h), r, {}, f.underflows};
+    Shown s{crop(f.picture, (f.picture.width - w) / 2, (f.picture.height - h) / 2, w, h), f.times, {}, f.underflows};
     s.stamp = read_stamp(s.frame);
     shown_.push_back(std::move(s));
   });

@@ -22,7 +22,7 @@ class CamerasRig {
   /// A displayed frame, and the frame number and camera in its pixels; nothing if they cannot be read.
   struct Shown {
     oracle::Frame frame;
-    board::FrameRecord record;
+    video::FrameTimes record;
     struct Stamp {
       unsigned camera, number;
     };
@@ -43,7 +43,7 @@ class CamerasRig {
 
   board::Board& board() { return *board_; }
   /// Displayed frames for which it returns false are not in shown(). Empty: all are.
-  std::function<bool(const board::FrameRecord&)> keep;
+  std::function<bool(const video::FrameTimes&)> keep;
   const std::vector<Shown>& shown() const { return shown_; }
   /// What is wrong with the first displayed frame that is not, byte for byte, the host's remap of the
   /// frame that its pixels name by that camera's table; empty: nothing.

@@ -490,7 +490,7 @@ TEST(CamerasTest, EachCapturedFrameIsDisplayedSupersededOrDropped) {
   }
   // Each camera frame was captured, of one camera or the other.
   EXPECT_EQ(displayed, shown.size());
-  const board::FrameRecord& last = rig.shown().back().record;
+  const video::FrameTimes& last = rig.shown().back().record;
   ASSERT_TRUE(last.capture_end);
   const std::uint64_t since = (last.display_end - *last.capture_end) / (40 * kPsPerMs);
   EXPECT_EQ(captured + pending, shown.back().number - shown.front().number + 1u + since);

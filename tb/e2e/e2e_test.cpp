@@ -343,11 +343,11 @@ std::uint64_t underflows_under_load(unsigned vpss_read_priority, const std::stri
   auto& board = rig.build();
   rig.advance(390 * kPsPerMs);
   EXPECT_TRUE(board.window_start()) << "the display does not run yet";
-  EXPECT_EQ(board.sink.assembler.underflows(), 0u);
+  EXPECT_EQ(board.sink.stats.underflows.count(), 0u);
   // Register BCR, as the firmware would write it.
   board.dm365.vpss.regs.write(0x08, 4, 0x2u | vpss_read_priority << 2);
   rig.advance(60 * kPsPerMs);
-  return board.sink.assembler.underflows();
+  return board.sink.stats.underflows.count();
 }
 
 TEST(EndToEndTest, VpssAtLowestPriorityUnderHeavyTrafficUnderflows) {

@@ -97,7 +97,7 @@ std::string board_says(const std::string& experiment, const Keys& keys, When whe
   for (const Shown& s : rig.shown()) {
     std::uint64_t h = 0;
     for (const std::uint8_t b : s.frame.uyvy) h = (h ^ b) * 0x100'0000'01B3u;
-    const board::FrameRecord& r = s.record;
+    const video::FrameTimes& r = s.record;
     out << r.remap_start.value_or(0) << ' ' << r.remap_end.value_or(0) << ' ' << r.display_start << ' ';
     out << h << '\n';
   }

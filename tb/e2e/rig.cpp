@@ -65,10 +65,10 @@ board::Board& Rig::build() {
     board_->load({s.address, s.data, s.memory_size - s.data.size()});
   }
   board_->load({PARAM_PAGE_BASE, app::parameter_page(params, *source_)});
-  frames_ = board_->observe_frames([this](const video::DisplayFrame& f, const board::FrameRecord& r) {
+  frames_ = board_->observe_frames([this](const video::Frame& f) {
     const unsigned w = params.width(), h = params.height();
     shown_.push_back({crop(f.picture, (f.picture.width - w) / 2, (f.picture.height - h) / 2, w, h),
-                      r, f.underflows});
+                      f.times, f.underflows});
   });
   return *board_;
 }

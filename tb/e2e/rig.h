@@ -20,7 +20,7 @@ inline constexpr Picoseconds kLimit = 20 * kPsPerSecond;
 /// A frame displayed in the window, with the board's record of it.
 struct Shown {
   oracle::Frame frame;   ///< the region that the firmware displays, without the surrounding border
-  board::FrameRecord record;
+  video::FrameTimes record;
   unsigned underflows = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -42,16 +43,15 @@ class StopAt : public app::ProgressSink {
 using Pictures = std::map<std::uint64_t, video::Picture>;
 
 /// What a run displays and what the camera sent, by the displayed frame's number.
-struct Seen {
-  Pictures displayed, sent;
-  static auto into(Pictures& all) {
-    return [&all](const app::DisplayedFrame& f) {
-      video::Picture& p = all[f.index];
-      p.width = f.width;
-      p.height = f.height;
-      p.uyvy.assign(f.uyvy.begin(), f.uyvy.end());
-    };
+struct Seen : app::FrameSink {
+  std::vector<video::FrameTimes> times;
+  Pictures shown, cameras;
+  void displayed(const video::Frame& frame, app::PixelShape) override {
+    times.push_back(frame.times);
+    shown[frame.times.index] = frame.picture;
   }
+  bool wants_sent() const override { return true; }
+  void sent(std::uint64_t index, const video::Picture& picture, app::PixelShape) override { cameras[index] = picture; }
 };
 
 app::Result run(const Keys& keys, bool strict = false, Picoseconds stop_at = kNever,
@@ -69,10 +69,7 @@ app::Result run(const Keys& keys, bool strict = false, Picoseconds stop_at = kNe
                        .stop = progress.stop,
                        .progress = progress,
                        .strict_sync = strict};
-  if (seen) {
-    request.frame = Seen::into(seen->displayed);
-    request.camera = Seen::into(seen->sent);
-  }
+  if (seen) request.frames = {seen};
   return machine->run(request);
 }
 
@@ -202,10 +199,20 @@ void expect_camera_pictures(const Keys& keys, std::uint64_t frames, unsigned wid
   Seen seen;
   const auto r = run(all, false, kNever, &seen);
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
-  ASSERT_EQ(seen.displayed.size(), frames);
-  ASSERT_EQ(seen.sent.size(), frames);
-  for (const auto& [index, shown] : seen.displayed) {
-    const video::Picture& sent = seen.sent.at(index);
+  ASSERT_EQ(seen.shown.size(), frames);
+  ASSERT_EQ(seen.cameras.size(), frames);
+  for (const video::FrameTimes& t : seen.times) {
+    EXPECT_EQ(t.camera, 0u);
+    ASSERT_TRUE(t.captured && t.capture_start && t.capture_end && t.remap_start && t.remap_end);
+    const std::array way{*t.capture_start, *t.capture_end, *t.remap_start,
+                         *t.remap_end,     t.display_start, t.display_end};
+    EXPECT_TRUE(std::ranges::is_sorted(way)) << "frame " << t.index;
+    const std::uint64_t period = seen.times[1].display_start - seen.times[0].display_start;
+    EXPECT_NEAR(static_cast<double>(t.display_end - t.display_start), 0.96 * static_cast<double>(period),
+                0.01 * static_cast<double>(period)) << "two fields and the blanking between them, not that behind them";
+  }
+  for (const auto& [index, shown] : seen.shown) {
+    const video::Picture& sent = seen.cameras.at(index);
     ASSERT_EQ(sent.width, shown.width);
     ASSERT_EQ(sent.height, shown.height);
     const unsigned x = (shown.width - width) / 2, y = (shown.height - height) / 2;
@@ -213,7 +220,7 @@ void expect_camera_pictures(const Keys& keys, std::uint64_t frames, unsigned wid
       EXPECT_TRUE(std::equal(shown.row(row) + x * 2, shown.row(row) + (x + width) * 2, sent.row(row) + x * 2))
           << "frame " << index << ", row " << row;
     if (index > 0) {
-      EXPECT_NE(sent, seen.sent.at(index - 1)) << "the chart moves";
+      EXPECT_NE(sent, seen.cameras.at(index - 1)) << "the chart moves";
     }
   }
 }
@@ -279,8 +286,9 @@ std::string stopped(const Keys& keys, bool strict, Picoseconds stop_at) {
   EXPECT_EQ(::pipe(ends), 0);
   const pid_t child = ::fork();
   if (child == 0) {
-    const auto r = run(keys, strict, stop_at);
-    const std::string text = app::stats_json(r.stats, r.complete, {}) + app::frames_csv(r.frames) +
+    Seen seen;
+    const auto r = run(keys, strict, stop_at, &seen);
+    const std::string text = app::stats_json(r.stats, r.complete, {}) + app::frames_csv(seen.times) +
                              app::timeline_csv(r.timeline_masters, r.timeline) +
                              app::stalls_csv(r.stalls) + app::latency_csv(r.latency) + r.uart;
     for (std::size_t done = 0; done < text.size();) {
@@ -343,14 +351,14 @@ TEST(RunTest, TheLastMosaicOfACarParkIsScoredAgainstItsPlan) {
   const app::Result r = run_mosaic(6, &seen);
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
   const video::PlanScore score({720, 576, 16, 12}, 4.8, 2);
-  const auto last = score(seen.displayed.at(5));
+  const auto last = score(seen.shown.at(5));
   EXPECT_EQ(real(r, "quality.psnr_y"), last.psnr_y);
   EXPECT_EQ(real(r, "quality.ssim_y"), last.ssim_y);
   EXPECT_EQ(real(r, "quality.line_error"), last.line_error);
   EXPECT_EQ(count(r, "quality.lines"), last.lines);
   EXPECT_EQ(count(r, "quality.lines_missed"), last.missed);
   // The first mosaic has one camera's part, so another mosaic's score would be another one.
-  const auto first = score(seen.displayed.at(0));
+  const auto first = score(seen.shown.at(0));
   EXPECT_LT(first.lines, last.lines / 2);
   EXPECT_LT(first.psnr_y, last.psnr_y - 3);
   // Lines of the car park are where they are in the plan: pairs move as a whole, by up to a pixel.
@@ -361,7 +369,7 @@ TEST(RunTest, TheLastMosaicOfACarParkIsScoredAgainstItsPlan) {
 TEST(RunTest, AMosaicWithABlackPartHasNoScore) {
   Seen seen;
   const app::Result r = run_mosaic(3, &seen);
-  EXPECT_EQ(seen.displayed.size(), 3u);
+  EXPECT_EQ(seen.shown.size(), 3u);
   for (const char* name : {"psnr_y", "ssim_y", "line_error", "lines", "lines_missed"})
     EXPECT_FALSE(app::find(r.stats, std::string("quality.") + name)) << name;
 }
@@ -390,7 +398,7 @@ TEST(RunTest, TheLastPictureOfTheChartOfLinesIsScored) {
   Seen seen;
   const app::Result r = run_lines({}, &seen);
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
-  const auto last = video::LineScore({720, 576, kLinesFocal, 1, 0, 0})(seen.displayed.at(1));
+  const auto last = video::LineScore({720, 576, kLinesFocal, 1, 0, 0})(seen.shown.at(1));
   EXPECT_EQ(real(r, "quality.straightness"), last.straightness);
   EXPECT_NEAR(real(r, "quality.psnr_y"), last.psnr_y, 1e-9);
   EXPECT_NEAR(real(r, "quality.ssim_y"), last.ssim_y, 1e-9);
@@ -400,7 +408,7 @@ TEST(RunTest, TheLastPictureOfTheChartOfLinesIsScored) {
   EXPECT_GT(last.places, 6500u);
   EXPECT_GT(last.psnr_y, 20);
   // Beside it, what a remap of each pixel by itself would have shown: by the definition of the lens.
-  const video::Picture& sent = seen.sent.at(1);
+  const video::Picture& sent = seen.cameras.at(1);
   video::Picture pixels(720, 576);
   for (unsigned v = 0; v < 576; ++v)
     for (unsigned u = 0; u < 720; ++u) {
@@ -409,8 +417,8 @@ TEST(RunTest, TheLastPictureOfTheChartOfLinesIsScored) {
       const auto column = static_cast<unsigned>(std::lround(359.5 + stretch * x));
       pixels.row(v)[2 * u + 1] = sent.row(static_cast<unsigned>(std::lround(287.5 + stretch * y)))[2 * column + 1];
     }
-  EXPECT_NEAR(real(r, "quality.pair_psnr_y"), video::psnr_y(seen.displayed.at(1), pixels), 1e-9);
-  EXPECT_NEAR(real(r, "quality.pair_ssim_y"), video::ssim_y(seen.displayed.at(1), pixels), 1e-9);
+  EXPECT_NEAR(real(r, "quality.pair_psnr_y"), video::psnr_y(seen.shown.at(1), pixels), 1e-9);
+  EXPECT_NEAR(real(r, "quality.pair_ssim_y"), video::ssim_y(seen.shown.at(1), pixels), 1e-9);
   const auto by_pixels = video::LineScore({720, 576, kLinesFocal, 1, 0, 0})(pixels);
   EXPECT_NEAR(real(r, "quality.pixel_psnr_y"), by_pixels.psnr_y, 1e-9);
   EXPECT_NEAR(real(r, "quality.pixel_ssim_y"), by_pixels.ssim_y, 1e-9);
@@ -517,7 +525,7 @@ TEST(RunTest, ARoadFilmIsScoredAgainstItsFlatFrame) {
   const auto film = app::decode_frames(FOVEA_ROAD_FILM, options);
   std::size_t which = 0;
   for (std::size_t n = 5; n < film.size(); ++n) {
-    const auto s = score(seen.displayed.at(1), film[n]);
+    const auto s = score(seen.shown.at(1), film[n]);
     if (s.psnr_y > best.psnr_y) best = s, which = n;
   }
   EXPECT_TRUE(which > 5 && which < 15) << "frames on both sides were looked at: " << which;
@@ -547,7 +555,7 @@ TEST(RunTest, ColourBarsComeToTheDisplayAsTheyAreSent) {
   const app::Result r = run({{"camera.kind", "bars"}, {"firmware.kernel", "copy"}, {"run.frames", "2"}}, false,
                                kNever, &seen);
   ASSERT_TRUE(r.complete) << r.guest_failure << r.uart;
-  EXPECT_EQ(seen.displayed.at(1), video::BarsSource({720, 576, false, 0}).field(0));
+  EXPECT_EQ(seen.shown.at(1), video::BarsSource({720, 576, false, 0}).field(0));
 }
 
 // A load that begins at power-up by default waits until boot software has brought up the SDRAM, and the

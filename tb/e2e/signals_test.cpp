@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <systemc>
 
@@ -196,10 +197,15 @@ TEST(SignalsTest, FramesThatLackPartsAreSaidAndLeftOutUntilTheCaptureIsWholeAgai
   // Which bursts find no room depends on the SDRAM, not on a standard. So which frames lack some is asked of the
   // capture, and bounded by the load's time on both sides.
   std::set<unsigned> broken;
-  auto& frame_end = rig.build().dm365.isif.on_frame_end;
-  frame_end = [&broken, before = frame_end](const video::CaptureFrame& f) {
+  std::map<Picoseconds, unsigned> number;
+  board::Board& board = rig.build();
+  board.dm365.isif.on_frame_start = [&, before = board.dm365.isif.on_frame_start](const video::CaptureFrame& f) {
     before(f);
-    if (f.overflows) broken.insert(static_cast<unsigned>(f.source_field[0] / 2));
+    number[f.start] = static_cast<unsigned>(board.decoder.on_wire().field / 2);
+  };
+  board.dm365.isif.on_frame_end = [&, before = board.dm365.isif.on_frame_end](const video::CaptureFrame& f) {
+    before(f);
+    if (f.overflows) broken.insert(number.at(f.start));
   };
   const auto said = listen(rig, kLimit);
   ASSERT_EQ(rig.shown().size(), 40u) << rig.board().uart_text();

@@ -80,11 +80,11 @@ board::Board& ViewsRig::build() {
   board_ = std::make_unique<board::Board>("board", params, pictures, elf_.entry(), false);
   for (const auto& s : elf_.segments()) board_->load({s.address, s.data, s.memory_size - s.data.size()});
   board_->load({PARAM_PAGE_BASE, app::parameter_page(params, stamped)});
-  frames_ = board_->observe_frames([this](const video::DisplayFrame& f, const board::FrameRecord& r) {
-    if (keep && !keep(r)) return;
+  frames_ = board_->observe_frames([this](const video::Frame& f) {
+    if (keep && !keep(f.times)) return;
     const unsigned w = params.width(), h = params.height();
-    shown_.push_back({crop(f.picture, (f.picture.width - w) / 2, (f.picture.height - h) / 2, w, h), r.index,
-                      r.display_start, {}});
+    shown_.push_back({crop(f.picture, (f.picture.width - w) / 2, (f.picture.height - h) / 2, w, h), f.times.index,
+                      f.times.display_start, {}});
   });
   return *board_;
 }

@@ -41,7 +41,7 @@ class ViewsRig {
 
   board::Board& board() { return *board_; }
   /// Displayed frames for which it returns false are not in shown(). Empty: all are.
-  std::function<bool(const board::FrameRecord&)> keep;
+  std::function<bool(const video::FrameTimes&)> keep;
   std::vector<Composed>& shown() { return shown_; }
   /// The program's runs, and for each camera the number of the first one that it believes to be that camera's.
   struct Runs {

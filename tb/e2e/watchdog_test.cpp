@@ -68,7 +68,7 @@ const std::string kReset = "reset by the watchdog: the program had stalled";
 /// the display's start until the first picture.
 template <class AnyRig>
 void leave_out_the_dark(AnyRig& rig, unsigned& dark) {
-  rig.keep = [&board = rig.board(), &dark](const board::FrameRecord& r) {
+  rig.keep = [&board = rig.board(), &dark](const video::FrameTimes& r) {
     const bool is_cut = !board.resets().empty() && r.display_start <= board.resets().front().at &&
                         board.resets().front().at < r.display_end;
     const bool kept = !is_cut && r.captured.has_value();

@@ -54,7 +54,7 @@ TEST(FramesTest, AreThoseOfTheFileUpToTwoThousand) {
         "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
         "display_start_ns,display_end_ns,dropped,repeated\n"
         "7,1,9,1000000.000,2000000.000,3000000.000,4000000.000,5000000.000,6500000.000,2,1\n";
-    for (std::size_t n = 1; n < rows; ++n) text += "8,0,,,,,,,,0,0\n";
+    for (std::size_t n = 1; n < rows; ++n) text += "8,,,,,,,7000000.000,8500000.000,0,0\n";
     run.write(dir);
     dir.write("run/frames.csv", text);
     return json(chart_data(load_results(dir / "run", {}), "")["frames"]);
@@ -62,8 +62,8 @@ TEST(FramesTest, AreThoseOfTheFileUpToTwoThousand) {
   EXPECT_EQ(frames(2), json::parse(R"([
       {"frame": 7, "camera": 1, "captured": 9, "capture": [1.0, 2.0], "remap": [3.0, 4.0], "display": [5.0, 6.5],
        "dropped": 2, "repeated": true},
-      {"frame": 8, "camera": 0, "captured": null, "capture": [null, null], "remap": [null, null],
-       "display": [null, null], "dropped": 0, "repeated": false}])"));
+      {"frame": 8, "camera": null, "captured": null, "capture": [null, null], "remap": [null, null],
+       "display": [7.0, 8.5], "dropped": 0, "repeated": false}])"));
   EXPECT_EQ(frames(2000).size(), 2000u);
   EXPECT_EQ(frames(2001).size(), 2000u);
 }
@@ -173,12 +173,14 @@ TEST(BandwidthTest, ARowInTwoIntervalsIsShared) {
 }
 
 TEST(FramePeriodTest, IsTheMeanFromTheFirstToTheLastDisplay) {
-  std::vector<app::FrameRow> frames(4);
+  EXPECT_FALSE(frame_period({}));
+  std::vector<video::FrameTimes> frames(3);
   EXPECT_FALSE(frame_period(frames));
   for (std::size_t i = 0; i < frames.size(); ++i) frames[i].index = 10 + 2 * i;
-  frames[1].display_start = 1000;
+  for (video::FrameTimes& f : frames) f.display_start = 1000;
   EXPECT_FALSE(frame_period(frames));
-  frames[3].display_start = 1402;
+  EXPECT_FALSE(frame_period({frames.front()}));
+  frames[2].display_start = 1402;
   const auto p = frame_period(frames);
   ASSERT_TRUE(p);
   EXPECT_EQ(p->anchor, 1000u);

@@ -7,7 +7,7 @@
 namespace fovea::explain {
 namespace {
 
-using app::FrameRow;
+using video::FrameTimes;
 using app::StallRow;
 using app::StatRow;
 using ::testing::HasSubstr;
@@ -17,7 +17,7 @@ class ExplainTest : public ::testing::Test {
  protected:
   std::vector<StatRow> stats_ = test::two_frames().stats;
   std::vector<StallRow> stalls_;
-  std::vector<FrameRow> frames_;
+  std::vector<FrameTimes> frames_;
   std::vector<FunctionClocks> functions_;
   std::map<std::string, std::string> parameters_;
 
@@ -100,7 +100,7 @@ TEST_F(ExplainTest, RemapsInARowHaveNoBudget) {
 }
 
 TEST_F(ExplainTest, LatencyIsTheSumOfItsParts) {
-  FrameRow f;
+  FrameTimes f;
   f.capture_start = 0;
   f.capture_end = 38 * kPsPerMs;
   f.remap_start = 39 * kPsPerMs;

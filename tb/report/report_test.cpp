@@ -122,6 +122,10 @@ TEST(LoadTest, DamagedRowsAreNamedByFileAndLine) {
   dir.write("run/stalls.csv", "cause,region,culprit,cycles\n");
   dir.write("run/profile.folded", "main;remap 7\nmain\n");
   EXPECT_THAT(error(), HasSubstr("profile.folded:2: no number of clocks behind the stack"));
+  dir.write("run/frames.csv",
+            "frame,camera,captured_frame,capture_start_ns,capture_end_ns,remap_start_ns,remap_end_ns,"
+            "display_start_ns,display_end_ns,dropped,repeated\n0,,,,,,,1.000,2.000,0,0\n1,,,,,,,3.000,,0,0\n");
+  EXPECT_THAT(error(), HasSubstr("frames.csv:3: a displayed frame without the times of its display"));
 }
 
 // Figures.

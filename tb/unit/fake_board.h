@@ -41,33 +41,25 @@ class FakeBoard : public app::Machine {
     if (params_.mode.is("not_modelled")) DiagnosticsRef::current().not_modelled("field X of Y");
     app::Result result;
     tools.finish(cpu::Counts{}, result, result.lost);
-    std::vector<app::FrameRow> late;
     std::uint64_t shown = 0;
-    std::vector<std::uint8_t> uyvy(32 * 16 * 2, 128);
+    video::Frame frame;
+    frame.picture = video::Picture(32, 16, 128);
     for (std::uint64_t i = 0; i < params_.frames(); ++i) {
       if (request.stop) {
         result.complete = false;
         break;
       }
-      if (request.frame) request.frame({i, 32, 16, uyvy});
-      if (request.camera && i > 0) request.camera({i, 32, 16, uyvy});
-      app::FrameRow row;
-      row.index = i;
-      row.display_start = i * 40 * kPsPerMs;
-      for (; !late.empty(); late.erase(late.begin())) request.frame_row(late.front());
-      // As on the real board: rows are delivered when they are final, the last ones with the
-      // result.
-      if (request.frame_row && i % 3 != 2)
-        request.frame_row(row);
-      else
-        late.push_back(row);
+      frame.times.index = i;
+      frame.times.display_start = i * 40 * kPsPerMs;
+      for (app::FrameSink* sink : request.frames) sink->displayed(frame, {});
+      for (app::FrameSink* sink : request.frames)
+        if (sink->wants_sent() && i > 0) sink->sent(i, frame.picture, {});
       ++shown;
       request.progress.update({(i + 1) * 40 * kPsPerMs, i + 1, params_.frames(), 1000 * i});
       if (params_.mode.is("slow")) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     if (params_.mode.is("escape")) throw GuestFailure("at \x1b[31mmain\nsecond line");
     if (params_.mode.is("late_failure")) result.guest_failure = "watchdog\nlast access: 0x0";
-    result.frames = std::move(late);
     result.stats.push_back({"frame.displayed", shown, "count", "n"});
     result.stats.push_back(
         {"sync.strict", std::uint64_t{request.strict_sync ? 1u : 0u}, "count", "asked for"});

@@ -151,7 +151,7 @@ struct Display : FrameLog {
   /// Shows a frame; whether it is one that the decoder is to blame for.
   bool frame(Picoseconds synced_at) {
     decoder(synced_at);
-    const FrameRecord& r = shown(now, now + 38);
+    const video::FrameTimes& r = shown(now, now + 38);
     now += 40;
     EXPECT_TRUE(r.repeated || !r.relock);
     return r.relock;
@@ -191,8 +191,8 @@ TEST(FrameLogTest, ADecoderThatWasAlwaysLockedExcusesNothing) {
 
 TEST(FrameLogTest, WhatIsCapturedWithoutALockIsNoNewerFrame) {
   Display d;
-  d.capture(1, 39, 77, -1);
-  d.capture(2, 79, 117, -1);
+  d.capture(1, 39, 77, video::kNoCamera);
+  d.capture(2, 79, 117, video::kNoCamera);
   EXPECT_TRUE(d.frame(120));
   d.capture(3, 119, 157);
   EXPECT_TRUE(d.frame(120));
@@ -226,7 +226,7 @@ TEST(FrameLogTest, EachCapturedFrameHasOneFate) {
   Log log;
   // Camera 0, 1, 0, 1 ...; frame 6 began while no camera was locked.
   for (std::uint64_t i = 0; i < 9; ++i)
-    log.capture(i, i * 100, i * 100 + 50, i == 6 ? -1 : static_cast<int>(i % 2));
+    log.capture(i, i * 100, i * 100 + 50, i == 6 ? video::kNoCamera : static_cast<unsigned>(i % 2));
   const auto remap = [&](unsigned n) {
     log.show(Phase::kRemapStart, n);
     log.show(Phase::kRemapEnd, n);
@@ -248,7 +248,8 @@ TEST(FrameLogTest, EachCapturedFrameHasOneFate) {
 TEST(FrameLogTest, AtTheEndOldFramesHaveAFateAndYoungOnesArePending) {
   Log log;
   // Frame i is in memory at 100 i + 50. 1 is on show, 3 was corrected by 370, 5 is being corrected.
-  for (std::uint64_t i = 0; i < 9; ++i) log.capture(i, i * 100, i * 100 + 50, i == 2 ? -1 : static_cast<int>(i % 2));
+  for (std::uint64_t i = 0; i < 9; ++i)
+    log.capture(i, i * 100, i * 100 + 50, i == 2 ? video::kNoCamera : static_cast<unsigned>(i % 2));
   const auto fates = [&](std::size_t camera) {
     const FrameLog::Fates& f = log.fates(camera);
     return std::array<std::uint64_t, 5>{f.captured, f.displayed, f.superseded, f.dropped, f.pending};

@@ -143,9 +143,9 @@ class ToyBoard : public app::Machine {
     result.stats.push_back({"startup.first_frame", 0.25, "s", "first frame"});
     result.stats.push_back({"frame.remap_time.mean", ms * 1e-3, "s", "time"});
     result.stats.push_back({"frame.remap_time.max", ms * 1e-3, "s", "time"});
-    app::FrameRow row;
-    row.capture_start = 123'456'789;  // ps
-    result.frames.push_back(row);
+    video::Frame frame;
+    frame.times.capture_start = 123'456'789;  // ps
+    for (app::FrameSink* sink : request.frames) sink->displayed(frame, {});
     return result;
   }
 

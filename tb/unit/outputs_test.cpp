@@ -164,23 +164,24 @@ TEST(ConfigJsonTest, ShowsValueOriginAndTag) {
 }
 
 TEST(FramesCsvTest, UnknownTimesAreEmptyCells) {
-  FrameRow a;
+  video::FrameTimes a;
   a.index = 3;
   a.camera = 1;
   a.captured = 7;
   a.capture_start = 1'500;
   a.display_start = 40'000'000;
+  a.display_end = 78'400'000;
   a.dropped = 2;
   a.repeated = true;
-  const std::vector<FrameRow> rows{a};
+  const std::vector<video::FrameTimes> rows{a};
   const std::string csv = frames_csv(rows);
-  EXPECT_EQ(csv.substr(csv.find('\n') + 1), "3,1,7,1.500,,,,40000.000,,2,1,,\n") << "shown again";
+  EXPECT_EQ(csv.substr(csv.find('\n') + 1), "3,1,7,1.500,,,,40000.000,78400.000,2,1,,\n") << "shown again";
   const std::string header = csv.substr(0, csv.find('\n'));
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), 12);
 }
 
 TEST(FramesCsvTest, DurationsAreThoseOfTheFigures) {
-  FrameRow row;
+  video::FrameTimes row;
   row.captured = 7;
   row.capture_start = 1'500;
   row.remap_start = 20'000;
@@ -261,11 +262,11 @@ TEST(VerdictTest, OfSeveralCamerasARepeatedFrameIsNoFault) {
 }
 
 TEST(FramesCsvTest, AFrameOfNoCameraHasAnEmptyCell) {
-  FrameRow row;
+  video::FrameTimes row;
   row.index = 3;
   row.camera = 2;
   EXPECT_TRUE(frames_csv_line(row).starts_with("3,2,,"));
-  row.camera = ~0u;
+  row.camera = video::kNoCamera;
   EXPECT_TRUE(frames_csv_line(row).starts_with("3,,,"));
 }
 

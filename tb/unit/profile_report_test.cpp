@@ -191,7 +191,7 @@ TEST_F(ProfileReportTest, MaskedStretchAndStacks) {
 }
 
 TEST(FramePartsTest, PartsAddUpToTheLatency) {
-  FrameRow frame;
+  video::FrameTimes frame;
   frame.index = 7;
   frame.capture_start = 1'000;
   frame.capture_end = 21'000;

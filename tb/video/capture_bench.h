@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "model/video/camera_signal.h"
 #include "model/video/isif.h"
@@ -37,12 +39,13 @@ inline std::uint8_t pattern(unsigned row, unsigned i) {
 }
 
 /// Sends the small raster without end; codes may be damaged.
-class CaptureWire : public sc_core::sc_module, private Bt656Renderer {
+class CaptureWire : public sc_core::sc_module {
  public:
   sc_core::sc_port<Bt656If> video{"video"};
   Clock clock{kByteClock};
   std::function<std::uint8_t(unsigned line, std::uint8_t xy)> damage;
   std::function<unsigned(unsigned line)> missing;  ///< samples at a line's end
+  std::vector<unsigned> taken;  ///< the lines whose bytes were taken
   SC_HAS_PROCESS(CaptureWire);
   explicit CaptureWire(sc_core::sc_module_name name) : sc_module(name) { SC_METHOD(tick); }
   /// Start of the next line 1 strictly after now.
@@ -52,22 +55,22 @@ class CaptureWire : public sc_core::sc_module, private Bt656Renderer {
 
  private:
   void tick() {
-    line_ = locate(kSmall, n_).line;
-    const auto fv = kSmall.at(line_);
+    const unsigned line = locate(kSmall, n_).line;
+    const auto fv = kSmall.at(line);
     std::uint8_t xy = encode_xy(fv.f, fv.v, true);
-    if (damage) xy = damage(line_, xy);
+    if (damage) xy = damage(line, xy);
     const std::uint64_t first = n_ * kSmall.line_bytes;
     ++n_;
     next_trigger(ps_time(clock.edge(n_ * kSmall.line_bytes) - kernel_time()));
-    video->line({&kSmall, &clock, clock.edge(first), first, locate(kSmall, n_ - 1).field, line_, xy,
-                 encode_xy(fv.f, fv.v, false), this, kNoCamera,
-                 missing ? missing(line_) : 0});
+    if (!video->begin_line({&kSmall, &clock, first, xy})) return;
+    taken.push_back(line);
+    video->take_line(compose(line).first(kSmall.line_bytes - (missing ? missing(line) : 0)));
   }
-  std::span<const std::uint8_t> render() override {
-    const auto fv = kSmall.at(line_);
+  std::span<const std::uint8_t> compose(unsigned line) {
+    const auto fv = kSmall.at(line);
     std::array<std::uint8_t, kActiveBytes> active{};
     if (!fv.v) {
-      const unsigned row = 2 * (line_ - kSmall.active_first[fv.f]) + fv.f;
+      const unsigned row = 2 * (line - kSmall.active_first[fv.f]) + fv.f;
       for (unsigned i = 0; i < kActiveBytes; ++i) active[i] = pattern(row, i);
     }
     compose_line(kSmall, encode_xy(fv.f, fv.v, true), encode_xy(fv.f, fv.v, false),
@@ -75,7 +78,6 @@ class CaptureWire : public sc_core::sc_module, private Bt656Renderer {
     return {bytes_.data(), kSmall.line_bytes};
   }
   std::uint64_t n_ = 0;
-  unsigned line_ = 0;
   std::array<std::uint8_t, kMaxLineBytes> bytes_{};
 };
 
@@ -174,6 +176,7 @@ class CaptureTest : public testing::Test {
     run_until(b.wire.next_frame() - kPsPerUs);
     std::fill(b.memory.bytes.begin(), b.memory.bytes.end(), 0xEE);
     b.memory.log.clear();
+    b.wire.taken.clear();
     b.started.clear();
     b.ended.clear();
     for (std::size_t i = 0; i < b.edges.size(); ++i) b.edges[i].rises.clear();

@@ -302,6 +302,18 @@ TEST_F(CaptureTest, EveryPairOfWrongBitsIsFoundAndMattersOnlyWhereThePictureBegi
     }
 }
 
+TEST_F(CaptureTest, OnlyBytesOfLinesThatAreCapturedAreTaken) {
+  b.regs.write(SLV0, 2);
+  b.regs.write(SLV1, 6);
+  b.regs.write(LNV, 2);
+  capture_frame();
+  EXPECT_EQ(b.wire.taken, (std::vector<unsigned>{4, 5, 6, 20, 21, 22})) << "the ISIF's line 1 is line 3 or 15";
+  b.wire.taken.clear();
+  b.regs.write(SYNCEN, 1);
+  run_until(frame_start_ + 2 * kFrame);
+  EXPECT_EQ(b.wire.taken, std::vector<unsigned>{}) << "none is written";
+}
+
 TEST_F(CaptureTest, OfAShortLineOnlyWhatCameIsWritten) {
   b.wire.missing = [](unsigned line) { return line == 5 ? kActiveBytes - 100u : 0u; };
   capture_frame();

@@ -67,7 +67,7 @@ struct Bench {
   FakeMemory memory{"memory"};
   RegisterPort osd_regs{"osd_regs"}, venc_regs{"venc_regs"};
   EdgeLog edges{"edges"};
-  std::vector<DisplayFrame> frames;
+  std::vector<Frame> frames;
   std::vector<Osd::Latch> latches;
 
   Bench() {
@@ -85,8 +85,12 @@ struct Bench {
     tap.out.bind(sink.lines);
     venc.interrupt.out(event);
     edges.in(event);
-    sink.assembler.on_frame = [this](const DisplayFrame& f) { frames.push_back(f); };
-    osd.on_latch = [this](const Osd::Latch& l) { latches.push_back(l); };
+    sink.on_frame = [this](const Frame& f) { frames.push_back(f); };
+    osd.on_latch = [this](const Osd::Latch& l) {
+      sink.latched(l);
+      latches.push_back(l);
+    };
+    osd.on_late = [this](unsigned bursts) { sink.late(bursts); };
   }
 };
 inline Bench* bench = nullptr;
@@ -137,6 +141,7 @@ class DisplayTest : public testing::Test {
     b.memory.log.clear();
     violations_ = b.sink.stats.violations.count();
     underflows_ = b.sink.stats.underflows.count();
+    repeated_ = b.sink.stats.repeated.count();
   }
   void TearDown() override { EXPECT_EQ(b.sink.stats.violations.count(), violations_); }
   void set_address(std::uint32_t a) {
@@ -156,7 +161,8 @@ class DisplayTest : public testing::Test {
     return n;
   }
   std::uint64_t underflows() const { return b.sink.stats.underflows.count() - underflows_; }
-  std::uint64_t violations_ = 0, underflows_ = 0;
+  std::uint64_t repeated() const { return b.sink.stats.repeated.count() - repeated_; }
+  std::uint64_t violations_ = 0, underflows_ = 0, repeated_ = 0;
 };
 
 }  // namespace fovea::video

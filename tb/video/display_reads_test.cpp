@@ -95,7 +95,7 @@ TEST_F(DisplayTest, WhatIsLateAlreadyIsNotRead) {
   const std::uint64_t first[2] = {kIs625 ? 22u : 16u, kIs625 ? 335u : 279u};
   std::size_t reads = 0;
   for (const auto& r : b.memory.log) {
-    if (r.time >= b.frames[0].end) break;
+    if (r.time >= b.frames[0].times.display_end) break;
     ++reads;
     const unsigned row = (r.address - kBuffer) / kPitch, byte = (r.address - kBuffer) % kPitch;
     const Picoseconds due = clock.edge(origin + (first[row % 2] + row / 2) * kStd.line_bytes +

@@ -61,7 +61,6 @@ void FrameAssembler::check(const DisplayLine& line) {
 
 void FrameAssembler::line(const DisplayLine& line) {
   check(line);
-  underflows_ += line.underflows;
   const Standard& s = *line.standard;
   Placement place = &s == &k625 ? kPlacement625 : kPlacement525All;
   if (&s != &k625) place.rows = rows_525;
@@ -72,12 +71,10 @@ void FrameAssembler::line(const DisplayLine& line) {
     rows_ = 0;
     if (frame_.picture.width != kActivePixels || frame_.picture.height != place.rows)
       frame_.picture = Picture(kActivePixels, place.rows);
-    frame_.start = line.start;
-    frame_.underflows = 0;
-    frame_.window = true;
+    frame_.times = {};
+    frame_.times.display_start = line.start;
   }
   if (!open_) return;
-  frame_.underflows += line.underflows;
   const int row = place.row(line.f, line.number);
   if (row < 0) return;
   std::uint8_t* to = frame_.picture.row(static_cast<unsigned>(row));
@@ -86,8 +83,6 @@ void FrameAssembler::line(const DisplayLine& line) {
   } else {
     for (unsigned i = 0; i < kActiveBytes; ++i) to[i] = i & 1 ? 16 : 128;
   }
-  frame_.window = frame_.window && line.window;
-  frame_.address[line.f] = line.address;
   ++rows_;
   if (!line.f || line.number != place.first_line[1] + place.rows / 2 - 1) return;
 
@@ -96,14 +91,9 @@ void FrameAssembler::line(const DisplayLine& line) {
     ++broken_;
     return;
   }
-  frame_.index = frames_++;
-  frame_.end = line.end;
-  frame_.repeated = frame_.window && previous_window_ && frame_.address == previous_address_ &&
-                    frame_.picture == previous_;
-  repeated_ += frame_.repeated;
+  frame_.times.index = frames_++;
+  frame_.times.display_end = line.end;
   if (on_frame) on_frame(frame_);
-  previous_window_ = frame_.window;
-  previous_address_ = frame_.address;
   std::swap(previous_, frame_.picture);
 }
 

@@ -1,6 +1,5 @@
 // The display: checks the timing and order of the lines that it receives, and assembles frames.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -8,7 +7,7 @@
 
 #include "model/common/units.h"
 #include "model/video/core/bt656.h"
-#include "model/video/core/picture.h"
+#include "model/video/core/frame.h"
 
 namespace fovea::video {
 
@@ -19,20 +18,6 @@ struct DisplayLine {
   bool f;                    ///< field bit
   Picoseconds start, end;    ///< start of the first active sample and end of the last one
   const std::uint8_t* uyvy;  ///< kActiveBytes bytes, valid during the call; null: a black line
-  bool window;               ///< the video window was enabled in this field
-  std::uint32_t address;     ///< base address of window 0 latched for this field; 0 if disabled
-  unsigned underflows;       ///< bursts that arrived too late for this line
-};
-
-/// A complete displayed frame.
-struct DisplayFrame {
-  std::uint64_t index;                   ///< number of frames completed before it
-  Picoseconds start, end;                ///< start of its first sample and end of its last row
-  Picture picture;                       ///< 720 x 576, or 720 x 480 or 486 pixels
-  std::array<std::uint32_t, 2> address;  ///< latched buffer address of each field
-  bool window;                           ///< the video window was enabled in both fields
-  unsigned underflows;                   ///< bursts of this frame that arrived too late
-  bool repeated;  ///< window enabled, and the same addresses and pixels as the previous frame
 };
 
 /// Assembles frames of 576 or 480 rows (for 525/60 the first 240 active lines of each field, or 243: `rows_525`).
@@ -41,7 +26,9 @@ struct DisplayFrame {
 /// uninterrupted count, because edges are rounded down).
 class FrameAssembler {
  public:
-  std::function<void(const DisplayFrame&)> on_frame;
+  /// Called for each whole frame with its picture, the times of its display and, as its index, the number of frames
+  /// before it. Who receives it may complete it.
+  std::function<void(Frame&)> on_frame;
   unsigned rows_525 = 480;  ///< rows of a picture in 525/60: 480, or the 486 of all lines that both fields have
 
   void line(const DisplayLine& line);
@@ -49,10 +36,10 @@ class FrameAssembler {
   /// time.
   void raster_off();
 
+  /// During on_frame: whether the frame's pixels are those of the whole frame before it.
+  bool unchanged() const { return frame_.picture == previous_; }
   std::uint64_t frames() const { return frames_; }
-  std::uint64_t repeated() const { return repeated_; }
   std::uint64_t broken_frames() const { return broken_; }
-  std::uint64_t underflows() const { return underflows_; }
   std::uint64_t violations() const { return violations_; }
   /// Descriptions of the first few violations.
   const std::vector<std::string>& messages() const { return messages_; }
@@ -68,12 +55,10 @@ class FrameAssembler {
 
   bool open_ = false;
   unsigned rows_ = 0;  // rows of the current frame received so far
-  DisplayFrame frame_{};
+  Frame frame_;
   Picture previous_;
-  std::array<std::uint32_t, 2> previous_address_{};
-  bool previous_window_ = false;
 
-  std::uint64_t frames_ = 0, repeated_ = 0, broken_ = 0, underflows_ = 0, violations_ = 0;
+  std::uint64_t frames_ = 0, broken_ = 0, violations_ = 0;
   std::vector<std::string> messages_;
 };
 

@@ -29,6 +29,9 @@ struct Picture {
   friend bool operator==(const Picture&, const Picture&) = default;
 };
 
+/// In place of a camera's number: the picture of none.
+inline constexpr unsigned kNoCamera = ~0u;
+
 /// Delivers what the camera sees. Field k starts k field periods after power-up. field(k) returns a
 /// picture of full height for that instant; the encoder sends the rows of the field's parity. The
 /// result must depend on k only. The reference is valid until the next call.

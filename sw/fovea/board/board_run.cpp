@@ -100,8 +100,7 @@ class BoardMachine : public Machine {
   std::vector<EndCondition> end_conditions(const Request& request) const;
   void build_board(const ElfImage& elf, const CameraInputs& cameras, const Request& request);
   void open_outputs(Session& s, const CameraInputs& cameras);
-  void take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
-                  const board::FrameRecord& r);
+  void take_frame(Session& s, const CameraInputs& cameras, const video::Frame& frame);
   void attach_host(Session& s);
   Picoseconds next_slice(Session& s) const;
   bool guest_failed(Session& s) const;
@@ -121,7 +120,6 @@ class BoardMachine : public Machine {
   std::unique_ptr<BoardFigures> figures_;
   std::unique_ptr<MosaicScore> mosaic_score_;
   std::unique_ptr<PictureScore> picture_score_;
-  std::vector<FrameRow> frames_;
 };
 
 void BoardMachine::open_window() {
@@ -300,24 +298,19 @@ void BoardMachine::open_outputs(Session& s, const CameraInputs& cameras) {
   window_ = board_->observe_window([this](bool open) { open ? open_window() : close_window(); });
 }
 
-/// A displayed frame goes to whoever wants it. An error of a writer is kept and stops the run.
-void BoardMachine::take_frame(Session& s, const CameraInputs& cameras, const video::DisplayFrame& f,
-                                 const board::FrameRecord& r) {
-  if (mosaic_score_) mosaic_score_->displayed(f);
-  const CameraInputs::Sent sent = cameras.sent(*board_, r);
-  if (picture_score_) picture_score_->displayed(f, r.camera, sent);
+/// A displayed frame goes to the scores, the tools and the sinks. An error of a writer is kept and stops the run.
+void BoardMachine::take_frame(Session& s, const CameraInputs& cameras, const video::Frame& frame) {
+  if (mosaic_score_) mosaic_score_->displayed(frame);
+  const CameraInputs::Sent sent = cameras.sent(*board_, frame.times);
+  if (picture_score_) picture_score_->displayed(frame, sent);
   if (s.failure) return;
+  const PixelShape pixel = pixel_on_screen(params_.video);
   try {
-    tools_.frame(f, r);
-    if (s.request.frame_row)
-      s.request.frame_row(row_of(r));
-    else
-      frames_.push_back(row_of(r));
-    if (s.request.frame)
-      s.request.frame({r.index, f.picture.width, f.picture.height, f.picture.uyvy, pixel_on_screen(params_.video)});
-    if (s.request.camera && sent.picture)
-      s.request.camera({r.index, sent.picture->width, sent.picture->height, sent.picture->uyvy,
-                        params_.video.format().digital ? PixelShape{} : pixel_on_screen(params_.video)});
+    tools_.frame(frame);
+    for (FrameSink* sink : s.request.frames) sink->displayed(frame, pixel);
+    for (FrameSink* sink : s.request.frames)
+      if (sent.picture && sink->wants_sent())
+        sink->sent(frame.times.index, *sent.picture, params_.video.format().digital ? PixelShape{} : pixel);
   } catch (...) {
     s.failure = std::current_exception();
   }
@@ -452,7 +445,6 @@ void BoardMachine::collect(Session& s, Result& result) {
   if (picture_score_) picture_score_->add(result.stats);
   tools_.settle(board_->window_end().value_or(kernel_time()));
   tools_.finish(counted, result, result.lost);
-  result.frames = std::move(frames_);
   result.uart = board_->uart_text();
   result.kernel = kernel_that_ran(params_, result.uart);
   for (std::size_t i = 0; i < board_->resets().size(); ++i)
@@ -471,7 +463,7 @@ Result BoardMachine::run(const Request& request) {
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
   Result result;
-  const bool keep = request.camera || PictureScore::possible(params_);
+  const bool keep = std::ranges::any_of(request.frames, &FrameSink::wants_sent) || PictureScore::possible(params_);
   const CameraInputs cameras(params_, keep, request.stop, result.notes);
   build_board(elf, cameras, request);
   Session session(*board_, request, elf, until, symbols_);
@@ -479,9 +471,7 @@ Result BoardMachine::run(const Request& request) {
   if (request.console || dialogue)
     session.console.emplace(*board_, request.console, std::move(dialogue));
   const Subscription frames =
-      board_->observe_frames([&](const video::DisplayFrame& f, const board::FrameRecord& r) {
-        take_frame(session, cameras, f, r);
-      });
+      board_->observe_frames([&](const video::Frame& frame) { take_frame(session, cameras, frame); });
   if (!session.wants_frames()) {
     board_->measure_whole_run();
     tools_.open_window();

@@ -24,14 +24,14 @@ CameraInputs::CameraInputs(const board::BoardParams& params, bool keep_pictures,
   }
 }
 
-CameraInputs::Sent CameraInputs::sent(board::Board& board, const board::FrameRecord& record) const {
-  if (!record.capture_start || record.camera >= pictures_.size()) return {nullptr, 0};
+CameraInputs::Sent CameraInputs::sent(board::Board& board, const video::FrameTimes& shown) const {
+  if (!shown.capture_start || shown.camera >= pictures_.size()) return {nullptr, 0};
   if (board.digital) {
-    const std::uint64_t field = board.digital->source_field(*record.capture_start);
+    const std::uint64_t field = board.digital->source_field(*shown.capture_start);
     return {pictures_[0]->kept(field), field};
   }
-  CameraPictures& pictures = *pictures_[record.camera];
-  const video::Picture* frame = pictures.frame(board.decoder.cameras()[record.camera], *record.capture_start);
+  CameraPictures& pictures = *pictures_[shown.camera];
+  const video::Picture* frame = pictures.frame(board.decoder.cameras()[shown.camera], *shown.capture_start);
   return {frame, pictures.first_field()};
 }
 

@@ -34,8 +34,8 @@ class CameraInputs {
     const video::Picture* picture;  ///< null if it is unknown or not kept any more
     std::uint64_t field;            ///< of its source; the first one of a frame of two
   };
-  /// The frame that `record` shows.
-  Sent sent(board::Board& board, const board::FrameRecord& record) const;
+  /// What a displayed frame shows.
+  Sent sent(board::Board& board, const video::FrameTimes& shown) const;
 
  private:
   std::vector<std::unique_ptr<video::StampedSource>> own_;

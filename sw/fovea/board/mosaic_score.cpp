@@ -34,7 +34,7 @@ std::unique_ptr<MosaicScore> MosaicScore::of(const board::BoardParams& params) {
   return std::unique_ptr<MosaicScore>(new MosaicScore(params));
 }
 
-void MosaicScore::displayed(const video::DisplayFrame& frame) {
+void MosaicScore::displayed(const video::Frame& frame) {
   const unsigned x = (frame.picture.width - mosaic_.width) / 2, y = (frame.picture.height - mosaic_.height) / 2;
   for (unsigned v = 0; v < mosaic_.height; ++v)
     std::copy_n(frame.picture.row(y + v) + 2 * x, mosaic_.row_bytes(), mosaic_.row(v));

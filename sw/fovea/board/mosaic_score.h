@@ -15,7 +15,7 @@ class MosaicScore {
   static std::unique_ptr<MosaicScore> of(const board::BoardParams& params);
 
   /// Remembers the mosaic in the middle of a displayed frame.
-  void displayed(const video::DisplayFrame& frame);
+  void displayed(const video::Frame& frame);
   /// Adds quality.*: the last mosaic against the plan. Nothing while the picture of a camera has not been shown, as its
   /// part is black.
   void add(std::vector<StatRow>& rows, const std::vector<board::CameraFrameStats>& cameras) const;

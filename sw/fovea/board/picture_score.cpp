@@ -69,7 +69,8 @@ std::unique_ptr<PictureScore> PictureScore::of(const board::BoardParams& params,
   return out;
 }
 
-void PictureScore::displayed(const video::DisplayFrame& frame, unsigned camera, const CameraInputs::Sent& sent) {
+void PictureScore::displayed(const video::Frame& frame, const CameraInputs::Sent& sent) {
+  const unsigned camera = frame.times.camera;
   if (camera >= cameras_.size() || (any_known_ && !cameras_[camera].known())) return;
   last_ = &cameras_[camera];
   crop(frame.picture, picture_);

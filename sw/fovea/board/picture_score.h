@@ -27,7 +27,7 @@ class PictureScore {
 
   /// Remembers the picture in the middle of a displayed frame and what the camera sent of it. If the scene of any
   /// camera is known, only pictures of such cameras.
-  void displayed(const video::DisplayFrame& frame, unsigned camera, const CameraInputs::Sent& sent);
+  void displayed(const video::Frame& frame, const CameraInputs::Sent& sent);
   /// Adds quality.*: the scores of the last such picture. Nothing if there was none.
   void add(std::vector<StatRow>& rows) const;
 

@@ -91,17 +91,20 @@ struct RunConsole {
 };
 
 /// The pictures that a run writes: what was displayed, and what the camera sent of it.
-class PictureFiles {
+class PictureFiles : public FrameSink {
  public:
   PictureFiles(const RunOptions& options, RunDir& dir, const std::atomic<bool>& stop)
-      : wanted_(!options.no_frames || options.mp4), displayed_(displayed(options, dir, stop)) {
+      : wanted_(!options.no_frames || options.mp4), displayed_(of_display(options, dir, stop)) {
     if (!options.no_frames)
       sent_.emplace(FrameWriterOptions{.folder = dir.folder() / "camera",
                                        .folder_fd = dir.make_folder("camera")});
   }
-  void attach(Request& request) {
-    if (wanted_) request.frame = [this](const DisplayedFrame& f) { push(displayed_, f); };
-    if (sent_) request.camera = [this](const DisplayedFrame& f) { push(*sent_, f); };
+  void displayed(const video::Frame& f, PixelShape pixel) override {
+    if (wanted_) push(displayed_, f.times.index, f.picture, pixel);
+  }
+  bool wants_sent() const override { return sent_.has_value(); }
+  void sent(std::uint64_t index, const video::Picture& picture, PixelShape pixel) override {
+    push(*sent_, index, picture, pixel);
   }
   /// @param lost receives why there is no film
   void close(LostOutputs& lost) {
@@ -111,7 +114,7 @@ class PictureFiles {
   }
 
  private:
-  static FrameWriterOptions displayed(const RunOptions& options, RunDir& dir, const std::atomic<bool>& stop) {
+  static FrameWriterOptions of_display(const RunOptions& options, RunDir& dir, const std::atomic<bool>& stop) {
     FrameWriterOptions out;
     // An encoder that works is waited for also after a signal, since the film belongs to the partial results.
     out.patience = {.stop = &stop, .silence_after_stop = std::chrono::seconds(3)};
@@ -122,8 +125,8 @@ class PictureFiles {
     if (options.mp4) out.mp4 = dir.file("display.mp4");
     return out;
   }
-  static void push(FrameWriter& writer, const DisplayedFrame& f) {
-    writer.push(f.index, f.width, f.height, f.uyvy, f.pixel);
+  static void push(FrameWriter& writer, std::uint64_t index, const video::Picture& p, PixelShape pixel) {
+    writer.push(index, p.width, p.height, p.uyvy, pixel);
   }
 
   bool wanted_;
@@ -274,7 +277,7 @@ int run(const RunOptions& options, const std::vector<std::string>& args, const C
                   .stop = stop,
                   .progress = meter,
                   .tools = std::move(tools),
-                  .frame_row = [&rows](const FrameRow& row) { rows.frame(row); },
+                  .frames = {&rows, &pictures},
                   .timeline_row = [&rows](std::span<const std::string> masters,
                                           const TimelineRow& row) { rows.timeline(masters, row); },
                   .limits = limits,
@@ -282,13 +285,12 @@ int run(const RunOptions& options, const std::vector<std::string>& args, const C
                   .console = console.stream ? &*console.stream : nullptr,
                   .semihosting = &semihosting};
   take_options(request, options, context);
-  pictures.attach(request);
   Result result = run_machine(*machine, request, meter);
   console.raw.reset();
   meter.finish();
   pictures.close(result.lost);
 
-  rows.finish(result.frames, result.timeline_masters, result.timeline);
+  rows.finish(result.timeline_masters, result.timeline);
   const std::vector<StatRow> host =
       write_results(dir, result, meter, args, options, experiment.name(), context);
   // With --console the output stream is reserved for UART0.

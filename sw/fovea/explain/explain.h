@@ -30,7 +30,7 @@ struct FunctionClocks {
 struct Inputs {
   std::span<const app::StatRow> stats;
   std::span<const app::StallRow> stalls;
-  std::span<const app::FrameRow> frames;
+  std::span<const video::FrameTimes> frames;
   std::span<const FunctionClocks> functions = {};
   /// Values of parameters as text ("3 cycles"); empty for an unknown key.
   std::function<std::string(std::string_view key)> parameter = {};

@@ -83,11 +83,8 @@ void find_latency_parts(const Run& run, std::vector<Finding>& out) {
   double capture = 0, wait = 0, remap = 0, until_shown = 0;
   std::size_t n = 0;
   for (const auto& f : run.frames()) {
-    if (f.repeated || !f.capture_start || !f.capture_end || !f.remap_start || !f.remap_end ||
-        !f.display_start)
-      continue;
-    const std::array times{*f.capture_start, *f.capture_end, *f.remap_start, *f.remap_end,
-                           *f.display_start};
+    if (f.repeated || !f.capture_start || !f.capture_end || !f.remap_start || !f.remap_end) continue;
+    const std::array times{*f.capture_start, *f.capture_end, *f.remap_start, *f.remap_end, f.display_start};
     if (!std::is_sorted(times.begin(), times.end())) continue;
     const auto seconds = [&](int i) {
       return 1e-12 * static_cast<double>(times[i + 1] - times[i]);

@@ -22,7 +22,7 @@ class Run {
   /// The number at the begin of a parameter's text ("3 cycles").
   std::optional<double> number(std::string_view key) const;
   std::span<const app::StallRow> stalls() const { return inputs_.stalls; }
-  std::span<const app::FrameRow> frames() const { return inputs_.frames; }
+  std::span<const video::FrameTimes> frames() const { return inputs_.frames; }
 
   std::span<const FunctionClocks> functions() const { return inputs_.functions; }
 

@@ -16,24 +16,16 @@
 #include "model/common/param.h"
 #include "sw/fovea/console/console.h"
 #include "sw/fovea/console/semihosting.h"
-#include "sw/fovea/files/rgb_image.h"
 #include "sw/fovea/files/run_limits.h"
 #include "sw/fovea/files/side_output.h"
 #include "sw/fovea/program/elf_image.h"
 #include "sw/fovea/program/exec_program.h"
+#include "sw/fovea/results/frame_sink.h"
 #include "sw/fovea/results/outputs.h"
 #include "sw/fovea/tools/slowest.h"
 #include "sw/fovea/tools/tool.h"
 
 namespace fovea::app {
-
-/// A displayed frame in 4:2:2: bytes Cb Y0 Cr Y1, no padding. Valid only during the call.
-struct DisplayedFrame {
-  std::uint64_t index = 0;
-  unsigned width = 0, height = 0;
-  std::span<const std::uint8_t> uyvy;
-  PixelShape pixel = {};
-};
 
 /// A program that the user brings, instead of the camera's firmware.
 struct UserProgram {
@@ -50,16 +42,10 @@ struct Request {
   ProgressSink& progress;
   bool strict_sync = false;            ///< --sync=strict
   std::vector<AskedTool> tools = {};   ///< no more than the machine provides (tools_of)
-  /// Called for each displayed frame, in order; may be empty. May throw UserError (disk full), which the board passes
-  /// on.
-  std::function<void(const DisplayedFrame&)> frame = {};
+  std::vector<FrameSink*> frames = {};  ///< each gets every frame; only a board has any
   /// Called with rows when they become final, in order; the result contains the others. If empty,
   /// the result contains all rows. May throw UserError.
-  std::function<void(const FrameRow&)> frame_row = {};
   std::function<void(std::span<const std::string> masters, const TimelineRow&)> timeline_row = {};
-  /// Called for each displayed frame with what the camera sent of it, woven from its two fields; not for
-  /// a frame whose picture is not kept any more (one that is shown very late).
-  std::function<void(const DisplayedFrame&)> camera = {};
   /// Port on which to wait for a debugger before the core starts.
   std::optional<std::uint16_t> gdb_port = {};
   std::ostream* notes = nullptr;  ///< receives the message with the port; not null if gdb_port is
@@ -85,7 +71,6 @@ struct Result : ToolOutput {
   std::string kernel;  ///< the remap kernels that the camera's firmware says it runs; empty: it said nothing
   Frequency core_clock;               ///< of a machine without a board
   std::vector<StatRow> host;          ///< for host.json, in any order
-  std::vector<FrameRow> frames;
   std::vector<std::string> timeline_masters;
   std::vector<TimelineRow> timeline;
   std::vector<StallRow> stalls;

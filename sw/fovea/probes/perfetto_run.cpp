@@ -226,7 +226,8 @@ void PerfettoRun::close_phase(Picoseconds at) {
   phase_.reset();
 }
 
-void PerfettoRun::frame(const video::DisplayFrame& shown, const board::FrameRecord& r) {
+void PerfettoRun::frame(const video::Frame& shown) {
+  const video::FrameTimes& r = shown.times;
   if (on_) {
     // Frame 0 has a flow too.
     const std::uint64_t flow = r.captured ? *r.captured + 1 : 0;

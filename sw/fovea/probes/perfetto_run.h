@@ -47,7 +47,7 @@ class PerfettoRun final : private MemObserver {
   /// Records them, too; before the simulation starts. @param name of the function at an address
   void watch_functions(cpu::ClockProfile& profile, PerfettoFunctions::Name name);
   /// A frame was shown.
-  void frame(const video::DisplayFrame& shown, const board::FrameRecord& record);
+  void frame(const video::Frame& shown);
   /// Writes the file. @throws UserError @return a sentence if events were dropped, or "" if the file holds
   /// all that was asked for
   std::string finish();

@@ -41,7 +41,7 @@ class PerfettoTool final : public Tool {
   }
   void open_window() override { run_.window_opened(); }
   void close_window() override { run_.window_closed(); }
-  void frame(const video::DisplayFrame& shown, const board::FrameRecord& record) override { run_.frame(shown, record); }
+  void frame(const video::Frame& frame) override { run_.frame(frame); }
   void finish(const cpu::Counts&, ToolOutput& output) override {
     if (const std::string note = run_.finish(); !note.empty()) output.notes.push_back(note);
   }

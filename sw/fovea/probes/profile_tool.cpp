@@ -15,7 +15,7 @@ class BoardProfileTool final : public Tool {
       : profile_(*parts.board, parts.whole_run, parts.programs), parts_(parts) {}
   void open_window() override { profile_.window(true); }
   void close_window() override { profile_.window(false); }
-  void frame(const video::DisplayFrame&, const board::FrameRecord& r) override { profile_.frame(r); }
+  void frame(const video::Frame& frame) override { profile_.frame(frame.times); }
   void finish(const cpu::Counts& end, ToolOutput& output) override {
     ToolOutput made = profile_result(profile_.finish(end, parts_.program), parts_.programs);
     made.files.push_back({"frame_parts.csv", profile_.frame_parts()});

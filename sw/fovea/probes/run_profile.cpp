@@ -5,22 +5,6 @@
 
 namespace fovea::app {
 
-FrameRow row_of(const board::FrameRecord& r) {
-  FrameRow out;
-  out.index = r.index;
-  out.camera = r.camera;
-  out.captured = r.captured;
-  out.capture_start = r.capture_start;
-  out.capture_end = r.capture_end;
-  out.remap_start = r.remap_start;
-  out.remap_end = r.remap_end;
-  out.display_start = r.display_start;
-  out.display_end = r.display_end;
-  out.dropped = r.dropped;
-  out.repeated = r.repeated;
-  return out;
-}
-
 void add_stacks(ProfileData& data, const cpu::CallStacks& stacks) {
   data.stacks = stacks.paths();
   for (const auto& c : stacks.calls()) data.calls.push_back({c.from, c.to, c.count, c.clocks});

@@ -12,9 +12,6 @@
 
 namespace fovea::app {
 
-/// The row of frames.csv.
-FrameRow row_of(const board::FrameRecord& record);
-
 /// Puts what a core's profile counted of call stacks into `data`.
 void add_stacks(ProfileData& data, const cpu::CallStacks& stacks);
 
@@ -28,7 +25,7 @@ class RunProfile {
   /// The window begins or ends now; as Core::mark_window().
   void window(bool open);
   /// A frame of the window was displayed.
-  void frame(const board::FrameRecord& record) { frames_.push_back(row_of(record)); }
+  void frame(const video::FrameTimes& times) { frames_.push_back(times); }
   /// @param end the core's counters at the end of the window, or at the end of the run
   ProfileData finish(const cpu::Counts& end, const std::string& program);
   /// After finish().
@@ -47,7 +44,7 @@ class RunProfile {
   bool opened_ = false;  // the window
   bool remaps_now_ = false;
   std::map<std::string, std::vector<Picoseconds>> delays_;  // by source of the interrupt
-  std::vector<FrameRow> frames_;
+  std::vector<video::FrameTimes> frames_;
   std::map<Picoseconds, cpu::ClockProfile::Snapshot> remaps_;
 };
 

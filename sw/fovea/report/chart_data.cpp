@@ -29,12 +29,12 @@ Json ms(const std::optional<std::uint64_t>& ps) {
   return ps ? Json(static_cast<double>(*ps) * 1e-9) : Json(nullptr);
 }
 
-Json frames_json(const std::vector<app::FrameRow>& rows) {
+Json frames_json(const std::vector<video::FrameTimes>& rows) {
   Json out = Json::array();
   for (const auto& r : rows) {
     if (out.size() == kMaxFrames) break;
     out.push_back({{"frame", r.index},
-                   {"camera", r.camera},
+                   {"camera", r.camera == video::kNoCamera ? Json(nullptr) : Json(r.camera)},
                    {"captured", r.captured ? Json(*r.captured) : Json(nullptr)},
                    {"capture", {ms(r.capture_start), ms(r.capture_end)}},
                    {"remap", {ms(r.remap_start), ms(r.remap_end)}},
@@ -58,14 +58,12 @@ Json bandwidth_json(const Bandwidth& b) {
 }
 
 /// From the first capture that is displayed to the end of some frames' display.
-std::pair<std::uint64_t, std::uint64_t> detailed_span(const std::vector<app::FrameRow>& frames) {
+std::pair<std::uint64_t, std::uint64_t> detailed_span(const std::vector<video::FrameTimes>& frames) {
   std::uint64_t from = ~std::uint64_t{0}, to = 0;
   for (std::size_t i = 0; i < std::min(frames.size(), kDetailedFrames); ++i) {
     const auto& f = frames[i];
-    for (const auto& t : {f.capture_start, f.remap_start, f.display_start})
-      if (t) from = std::min(from, *t);
-    for (const auto& t : {f.capture_end, f.remap_end, f.display_end})
-      if (t) to = std::max(to, *t);
+    from = std::min({from, f.capture_start.value_or(from), f.remap_start.value_or(from), f.display_start});
+    to = std::max({to, f.capture_end.value_or(to), f.remap_end.value_or(to), f.display_end});
   }
   return {from, to};
 }
@@ -135,17 +133,11 @@ Bandwidth bandwidth(const Timeline& timeline, std::uint64_t from, std::uint64_t 
   return out;
 }
 
-std::optional<FramePeriod> frame_period(const std::vector<app::FrameRow>& frames) {
-  std::optional<std::uint64_t> first, last;
-  std::uint64_t index_of_first = 0, index_of_last = 0;
-  for (const auto& f : frames) {
-    if (!f.display_start) continue;
-    if (!first) first = f.display_start, index_of_first = f.index;
-    last = f.display_start;
-    index_of_last = f.index;
-  }
-  if (!first || index_of_last <= index_of_first || *last <= *first) return std::nullopt;
-  return FramePeriod{*first, (*last - *first) / (index_of_last - index_of_first)};
+std::optional<FramePeriod> frame_period(const std::vector<video::FrameTimes>& frames) {
+  if (frames.empty()) return std::nullopt;
+  const video::FrameTimes &first = frames.front(), &last = frames.back();
+  if (last.index <= first.index || last.display_start <= first.display_start) return std::nullopt;
+  return FramePeriod{first.display_start, (last.display_start - first.display_start) / (last.index - first.index)};
 }
 
 Periods periods(std::uint64_t from, std::uint64_t to, FramePeriod of, std::size_t most) {

@@ -26,7 +26,7 @@ struct FramePeriod {
   std::uint64_t anchor = 0, length = 0;
 };
 /// The mean over the displayed frames; empty with fewer than two.
-std::optional<FramePeriod> frame_period(const std::vector<app::FrameRow>& frames);
+std::optional<FramePeriod> frame_period(const std::vector<video::FrameTimes>& frames);
 
 /// Whole frame periods between two times, or so many together that there are at most `most` intervals.
 struct Periods {

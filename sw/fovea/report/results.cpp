@@ -37,24 +37,27 @@ std::vector<app::StatRow> with_values(std::vector<results::Figure> figures) {
   return rows;
 }
 
-std::vector<app::FrameRow> read_frames(const fs::path& file) {
+std::vector<video::FrameTimes> read_frames(const fs::path& file) {
   // What follows is computed from these.
   static constexpr std::array<std::string_view, 11> kColumns{
       "frame",          "camera",         "captured_frame", "capture_start_ns",
       "capture_end_ns", "remap_start_ns", "remap_end_ns",   "display_start_ns",
       "display_end_ns", "dropped",        "repeated"};
-  std::vector<app::FrameRow> rows;
+  std::vector<video::FrameTimes> rows;
   results::each_csv_row(file, kColumns, [&](const CsvPlace& at, std::span<const std::string> f) {
-    app::FrameRow row;
+    video::FrameTimes row;
     row.index = whole(at, f[0]);
-    row.camera = static_cast<unsigned>(whole(at, f[1]));
+    if (!f[1].empty()) row.camera = static_cast<unsigned>(whole(at, f[1]));
     if (!f[2].empty()) row.captured = whole(at, f[2]);
     row.capture_start = time_ps(at, f[3]);
     row.capture_end = time_ps(at, f[4]);
     row.remap_start = time_ps(at, f[5]);
     row.remap_end = time_ps(at, f[6]);
-    row.display_start = time_ps(at, f[7]);
-    row.display_end = time_ps(at, f[8]);
+    if (f[7].empty() || f[8].empty())
+      throw UserError(fmt::format("{}:{}: a displayed frame without the times of its display",
+                                  app::one_line(at.file.string()), at.line));
+    row.display_start = *time_ps(at, f[7]);
+    row.display_end = *time_ps(at, f[8]);
     row.dropped = whole(at, f[9]);
     row.repeated = whole(at, f[10]) != 0;
     rows.push_back(row);

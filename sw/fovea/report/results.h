@@ -46,7 +46,7 @@ struct Results {
   std::vector<Parameter> parameters;
   std::vector<app::StatRow> stats, host;  ///< only those that have a value
   std::vector<results::Warning> warnings;
-  std::optional<std::vector<app::FrameRow>> frames;
+  std::optional<std::vector<video::FrameTimes>> frames;
   std::optional<Timeline> timeline;
   std::optional<std::vector<app::StallRow>> stalls;
   std::optional<std::vector<LatencyBin>> latency;

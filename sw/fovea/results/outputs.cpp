@@ -188,20 +188,20 @@ std::string frames_csv_header() {
          "display_start_ns,display_end_ns,dropped,repeated,remap_ns,latency_ns\n";
 }
 
-std::string frames_csv_line(const FrameRow& r) {
+std::string frames_csv_line(const video::FrameTimes& r) {
   using Time = std::optional<Picoseconds>;
   const auto between = [](Time from, Time to) { return from && to ? Time(*to - *from) : Time(); };
   // As frame.latency counts them: a frame that is shown again has none.
   const Time latency = r.repeated || !r.captured ? Time() : between(r.capture_start, r.display_start);
   return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.index,
-                     r.camera == ~0u ? "" : std::to_string(r.camera),
+                     r.camera == video::kNoCamera ? "" : std::to_string(r.camera),
                      r.captured ? std::to_string(*r.captured) : "", cell(r.capture_start),
                      cell(r.capture_end), cell(r.remap_start), cell(r.remap_end),
                      cell(r.display_start), cell(r.display_end), r.dropped, r.repeated ? 1 : 0,
                      cell(between(r.remap_start, r.remap_end)), cell(latency));
 }
 
-std::string frames_csv(std::span<const FrameRow> rows) {
+std::string frames_csv(std::span<const video::FrameTimes> rows) {
   std::string out = frames_csv_header();
   for (const auto& r : rows) out += frames_csv_line(r);
   return out;

@@ -10,6 +10,7 @@
 
 #include "model/common/check.h"
 #include "model/common/stats.h"
+#include "model/video/core/frame.h"
 #include "sw/fovea/config/experiment.h"
 #include "sw/fovea/results/csv.h"
 #include "sw/fovea/results/provenance.h"
@@ -29,18 +30,6 @@ struct StatRow {
 void collect(const StatGroup& group, std::vector<StatRow>& rows);
 /// The row called `name`, or nullptr.
 const StatRow* find(std::span<const StatRow> rows, std::string_view name);
-
-/// A displayed frame. Times are in ps since the start of the run and empty if unknown (a frame that
-/// is shown without remap has no remap times).
-struct FrameRow {
-  std::uint64_t index = 0;  ///< number of the displayed frame, from 0 on
-  unsigned camera = 0;  ///< ~0u: a black frame, while no camera was locked
-  std::optional<std::uint64_t> captured;  ///< number of the captured frame that it shows
-  std::optional<Picoseconds> capture_start, capture_end, remap_start, remap_end;
-  std::optional<Picoseconds> display_start, display_end;
-  std::uint64_t dropped = 0;  ///< captured frames that were skipped since the previous row
-  bool repeated = false;      ///< shows the same captured frame as the previous row
-};
 
 /// Bytes moved in [start, end), for each master in the order of the timeline's names.
 struct TimelineRow {
@@ -97,11 +86,11 @@ using results::csv_field;
 /// The header and one line of frames.csv and timeline.csv, for files that are written during the
 /// run.
 std::string frames_csv_header();
-std::string frames_csv_line(const FrameRow& row);
+std::string frames_csv_line(const video::FrameTimes& row);
 std::string timeline_csv_header(std::span<const std::string> masters);
 std::string timeline_csv_line(const TimelineRow& row, std::size_t masters);
 
-std::string frames_csv(std::span<const FrameRow> rows);
+std::string frames_csv(std::span<const video::FrameTimes> rows);
 /// `masters` names the elements of each row's vectors; columns are bytes per interval.
 std::string timeline_csv(std::span<const std::string> masters, std::span<const TimelineRow> rows);
 

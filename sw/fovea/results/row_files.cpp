@@ -7,7 +7,7 @@ RowFiles::RowFiles(RunDir& dir)
   frames_->write(frames_csv_header());
 }
 
-void RowFiles::frame(const FrameRow& row) { frames_->write(frames_csv_line(row)); }
+void RowFiles::displayed(const video::Frame& frame, PixelShape) { frames_->write(frames_csv_line(frame.times)); }
 
 void RowFiles::timeline(std::span<const std::string> masters, const TimelineRow& row) {
   timeline_header(masters);
@@ -19,9 +19,7 @@ void RowFiles::timeline_header(std::span<const std::string> masters) {
   has_header_ = true;
 }
 
-void RowFiles::finish(std::span<const FrameRow> frames, std::span<const std::string> masters,
-                      std::span<const TimelineRow> rows) {
-  for (const FrameRow& row : frames) frame(row);
+void RowFiles::finish(std::span<const std::string> masters, std::span<const TimelineRow> rows) {
   timeline_header(masters);
   for (const TimelineRow& row : rows) timeline(masters, row);
   frames_->close();

@@ -21,12 +21,11 @@ std::vector<std::pair<std::string, std::uint64_t>> clocks_between(const ClockPro
 
 }  // namespace
 
-std::string frame_parts_csv(std::span<const FrameRow> frames,
+std::string frame_parts_csv(std::span<const video::FrameTimes> frames,
                             const std::map<Picoseconds, ClockProfile::Snapshot>& snapshots) {
   std::string out = "frame,part,time_ns\n";
-  for (const FrameRow& f : frames) {
-    if (!f.capture_start || !f.capture_end || !f.remap_start || !f.remap_end || !f.display_start)
-      continue;
+  for (const video::FrameTimes& f : frames) {
+    if (!f.capture_start || !f.capture_end || !f.remap_start || !f.remap_end) continue;
     const auto from = snapshots.find(*f.remap_start), to = snapshots.find(*f.remap_end);
     if (from == snapshots.end() || to == snapshots.end()) continue;
     const auto part = [&](const std::string& name, Picoseconds time) {
@@ -48,7 +47,7 @@ std::string frame_parts_csv(std::span<const FrameRow> frames,
       if (n) part("remap." + name, share(before + n) - share(before));
       before += n;
     }
-    part("wait_for_display", *f.display_start - *f.remap_end);
+    part("wait_for_display", f.display_start - *f.remap_end);
   }
   return out;
 }

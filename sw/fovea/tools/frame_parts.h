@@ -14,7 +14,7 @@ namespace fovea::app {
 /// `remap.CAUSE` for the core's clocks until it ends, `wait_for_display`. The parts of a frame add up
 /// exactly. A frame whose way is not known in full is left out, and so are parts without time.
 /// @param snapshots the core's counters at the beginnings and ends of remaps, by their times
-std::string frame_parts_csv(std::span<const FrameRow> frames,
+std::string frame_parts_csv(std::span<const video::FrameTimes> frames,
                             const std::map<Picoseconds, cpu::ClockProfile::Snapshot>& snapshots);
 
 }  // namespace fovea::app

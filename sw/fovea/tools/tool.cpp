@@ -21,8 +21,8 @@ void Tools::settle(Picoseconds until) {
   for (const Made& m : made_) m.tool->settle(until);
 }
 
-void Tools::frame(const video::DisplayFrame& shown, const board::FrameRecord& record) {
-  for (const Made& m : made_) m.tool->frame(shown, record);
+void Tools::frame(const video::Frame& frame) {
+  for (const Made& m : made_) m.tool->frame(frame);
 }
 
 void Tools::finish(const cpu::Counts& end, ToolOutput& output, LostOutputs& lost) {

@@ -21,7 +21,6 @@ namespace fovea {
 class MemObserver;
 namespace board {
 class Board;
-struct FrameRecord;
 }
 namespace cpu {
 class Core;
@@ -34,7 +33,7 @@ namespace memsys {
 class MemorySystem;
 }
 namespace video {
-struct DisplayFrame;
+struct Frame;
 }
 }  // namespace fovea
 
@@ -114,7 +113,7 @@ class Tool {
   /// Now and then, with a time up to which all is decided.
   virtual void settle(Picoseconds) {}
   /// A frame of the window was displayed. May throw UserError.
-  virtual void frame(const video::DisplayFrame&, const board::FrameRecord&) {}
+  virtual void frame(const video::Frame&) {}
   /// After the simulation. @param end the core's counters at the end of the window, or of the run
   /// @throws UserError for an output that cannot be written
   virtual void finish(const cpu::Counts& end, ToolOutput& output) = 0;
@@ -148,7 +147,7 @@ class Tools {
   /// In reverse order, as finish().
   void close_window();
   void settle(Picoseconds until);
-  void frame(const video::DisplayFrame& shown, const board::FrameRecord& record);
+  void frame(const video::Frame& frame);
   /// What cannot be written goes to `lost`.
   void finish(const cpu::Counts& end, ToolOutput& output, std::vector<std::string>& lost);
 

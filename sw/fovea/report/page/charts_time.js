@@ -8,7 +8,7 @@ function drawFrames(place, run) {
   const times = frames.flatMap((f) => LANES.flatMap((lane) => f[lane])).filter((t) => t !== null);
   if (!times.length) return;
   // Cameras capture at the same time; remaps and displayed frames follow one another.
-  const cameras = [...new Set(frames.map((f) => f.camera))].sort();
+  const cameras = [...new Set(frames.map((f) => f.camera).filter((camera) => camera !== null))].sort();
   const lanes = [...cameras.map((camera) => ({lane: 'capture', camera, name: cameras.length > 1 ? `capture ${camera}` : 'capture'})),
                  {lane: 'remap', name: 'remap'}, {lane: 'display', name: 'display'}];
   const width = widthOf(place), box = {left: 72, right: width - 20, top: 12, bottom: 12 + 46 * lanes.length};
