@@ -116,7 +116,7 @@ class Board : public sc_core::sc_module {
   Subscription observe_window(WindowObserver observer) { return window_observers_.add(std::move(observer)); }
 
   /// The chip's first request to be reset that is not carried out (`run.resets`). The simulation pauses
-  /// at its instant: whoever runs it ends the run there.
+  /// at its instant, and the program around it ends the run there.
   const std::optional<ChipReset>& chip_reset() const { return chip_reset_; }
   /// Called at that instant, before the pause.
   using ResetObserver = std::function<void(const ChipReset&)>;

@@ -40,7 +40,7 @@ enum class Route {
 /// them when a user advances it to a time before which that user knows all requests.
 class MemorySystem final : private SlowRequestTeller {
  public:
-  /// @param diagnostics who hears of its warnings; two memory systems share them only if both are handed the same
+  /// @param diagnostics receives its warnings; two memory systems share them only if both are handed the same
   MemorySystem(const bus::CrossbarParams& crossbar, const mem::DdrParams& ddr, const AddressMap& map, MemoryHost& host,
                const DiagnosticsRef& diagnostics, Route route = Route::kCrossbar);
   MemorySystem(const MemorySystem&) = delete;

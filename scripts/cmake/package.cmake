@@ -7,7 +7,7 @@ endif()
 set(private lib/fovea)
 install(TARGETS fovea RUNTIME DESTINATION ${private})
 install(FILES ${PROJECT_BINARY_DIR}/fovea.commit DESTINATION ${private})
-foreach(program fovea_firmware fovea_cameras passthrough board_loader)
+foreach(program fovea_firmware fovea_cameras fovea_views passthrough board_loader)
   install(FILES ${PROJECT_BINARY_DIR}/sw/firmware/${program}.elf DESTINATION ${private}/sw/firmware)
 endforeach()
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/install)
@@ -25,10 +25,21 @@ install(FILES ${PROJECT_BINARY_DIR}/install/completion.bash
         DESTINATION share/bash-completion/completions RENAME fovea)
 # Experiments name their footage by a path that begins at their own folder.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/experiments DESTINATION share/fovea/scripts)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/traces/footage DESTINATION share/fovea/traces)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/traces/footage ${PROJECT_SOURCE_DIR}/traces/bus DESTINATION share/fovea/traces)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/sw/python/fovea DESTINATION lib/python3/dist-packages
+        PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/ci-example DESTINATION share/doc/fovea USE_SOURCE_PERMISSIONS
         PATTERN build EXCLUDE)
-install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION share/doc/fovea)
+# The manual, with its links: the pages lie as in the source tree.
+set(sources "")
+foreach(folder model rtl sw scripts tb traces)
+  list(APPEND sources ${PROJECT_SOURCE_DIR}/${folder}/*.md)
+endforeach()
+file(GLOB_RECURSE pages CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${sources})
+foreach(page README.md CHANGELOG.md CONTRIBUTING.md ${pages})
+  get_filename_component(folder ${page} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/${page} DESTINATION share/doc/fovea/${folder})
+endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/fovea RENAME copyright)
 
 set(CPACK_GENERATOR DEB)

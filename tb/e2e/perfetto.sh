@@ -37,6 +37,17 @@ run -o "$out/other" -s bus.arm_d.request_latency=9cycles
 head -c -1 "$out/run.pftrace" >"$out/cut.pftrace"
 ! read_trace "$out/cut.pftrace" "$out/run" >"$out/text" || fail 'the reader finds nothing in a damaged trace'
 
+# A picture that cannot be written ends the run while it is recorded: with one line and neither trace nor results.
+(
+  trap '' XFSZ
+  ulimit -f 200  # KiB: config.json fits
+  "$fovea" run "$out/small.yaml" -o "$out/full" --perfetto "$out/full.pftrace" -s run.frames=6 -s video.width=720 \
+    -s video.height=576 >"$out/text" 2>&1
+)
+[ $? = 2 ] && [ "$(wc -l <"$out/text")" = 1 ] && grep -q "cannot write .*frame_0000" "$out/text" ||
+  fail "a picture that cannot be written: $(cat "$out/text")"
+[ ! -e "$out/full" ] && [ ! -e "$out/full.pftrace" ] || fail 'a run without pictures leaves results'
+
 # Selection: tracks, from, for, size.
 shape() { read_trace --shape "$1"; }
 run -o "$out/run" --perfetto "$out/tracks.pftrace" --perfetto-tracks '^frames/|/phases$'

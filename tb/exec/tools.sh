@@ -35,8 +35,18 @@ refused() {
 }
 refused "--perfetto: there are no frames" --perfetto x.pf
 refused "--hazards: there is no DMA; allowed: with --board" --hazards
+refused "--hazards: there is no DMA; allowed: with --board" --fast-memory --hazards
 refused "--command-trace: there is no SDRAM; allowed: without --fast-memory" --fast-memory --command-trace x.csv
 refused "--command-trace 'r/x.csv': it lies in the output folder" -o r --command-trace r/x.csv
 refused "a file name is needed" --command-trace ''
+# A number in another base is that number, and a flag that is false was not given.
+"$fovea" exec -q --hazards=false -o unasked "$core" 0 >words 2>said || fail "a flag that is false: $(<said)"
+cmp unasked/stats.json plain_core/stats.json || fail "a flag that is false changes the figures"
+for kept in 16 0x10 020; do
+  "$fovea" exec -q --log-registers '.' --log-registers-kept "$kept" -o "kept_$kept" --board "$board" 1 >words 2>said ||
+    fail "--log-registers-kept $kept: $(<said)"
+  cmp "kept_$kept/registers.log" kept_16/registers.log || fail "--log-registers-kept $kept is another number"
+done
+refused "--log-registers-kept: Value" --log-registers . --log-registers-kept 0x0
 [ ! -e x.pf ] && [ ! -e x.csv ] && [ ! -e r ] || fail "a refusal leaves a file"
 echo "the tools of exec work"

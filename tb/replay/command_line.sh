@@ -153,6 +153,9 @@ grep -q '"ddr.right.latency.mean": {"value": null' "$out/replay/stats.json" || f
 cp "$trace" "$out/earlier.trace"
 expect kept 3 -- run -o "$out/run" -s run.start_limit=10ms --bus-trace "$out/earlier.trace"
 cmp "$trace" "$out/earlier.trace" || fail 'a run that fails destroys an earlier trace'
+expect kept_strict 3 'showed no frame within' 'bus trace: nothing was recorded' -- \
+  run -o "$out/run" -s run.start_limit=10ms --strict --bus-trace "$out/earlier.trace"
+cmp "$trace" "$out/earlier.trace" || fail 'a run that fails destroys an earlier trace with --strict'
 [ ! -e "$out/earlier.trace.tmp" ] || fail 'a run that fails leaves a piece of a trace'
 expect empty_name 2 -- run -o "$out/run" --bus-trace ''
 expect unwritable 2 '/nowhere/a.trace' -- run -o "$out/run" --bus-trace /nowhere/a.trace

@@ -144,6 +144,7 @@ class ToyBoard : public app::Machine {
     result.stats.push_back({"frame.remap_time.mean", ms * 1e-3, "s", "time"});
     result.stats.push_back({"frame.remap_time.max", ms * 1e-3, "s", "time"});
     video::Frame frame;
+    frame.picture = video::Picture(32, 16, 128);
     frame.times.capture_start = 123'456'789;  // ps
     for (app::FrameSink* sink : request.frames) sink->displayed(frame, {});
     return result;

@@ -88,7 +88,7 @@ class Core : public Background {
  public:
   /// @param tcm the RAM of 32 KB that is visible through both TCM windows (0x0 and 0x10000); its
   ///        size is a power of two. Empty: a core without TCMs
-  /// @param diagnostics who hears of what the program does wrong or what is not modelled
+  /// @param diagnostics receives what the program does wrong and what is not modelled
   Core(const CpuParams& params, BusPort& port, std::span<std::uint8_t> tcm, const DiagnosticsRef& diagnostics);
   Core(const Core&) = delete;
   Core& operator=(const Core&) = delete;

@@ -34,7 +34,7 @@ namespace fovea::mem {
 /// the command bus, on which one command is issued at a time.
 class DdrController {
  public:
-  /// @param diagnostics who hears of postponed refreshes and of data that are lost
+  /// @param diagnostics receives warnings of postponed refreshes and of lost data
   DdrController(const DdrParams& params, BackingStore& store, const DiagnosticsRef& diagnostics);
   DdrController(const DdrController&) = delete;
   DdrController& operator=(const DdrController&) = delete;

@@ -27,7 +27,7 @@ struct DisplayLine {
 class FrameAssembler {
  public:
   /// Called for each whole frame with its picture, the times of its display and, as its index, the number of frames
-  /// before it. Who receives it may complete it.
+  /// before it. The receiver may complete it.
   std::function<void(Frame&)> on_frame;
   unsigned rows_525 = 480;  ///< rows of a picture in 525/60: 480, or the 486 of all lines that both fields have
 

@@ -1,4 +1,4 @@
-/* What nobody handles. */
+/* Exceptions without a handler. */
 #ifndef FOVEA_FIRMWARE_EXCEPTION_H
 #define FOVEA_FIRMWARE_EXCEPTION_H
 

@@ -22,10 +22,7 @@
 #include "sw/fovea/board/picture_score.h"
 #include "sw/fovea/board/run_end.h"
 #include "sw/fovea/console/core_semihosting.h"
-#include "sw/fovea/files/ffmpeg.h"
-#include "sw/fovea/files/side_output.h"
 #include "sw/fovea/machine/machine.h"
-#include "sw/fovea/probes/run_profile.h"
 #include "sw/fovea/program/elf_image.h"
 #include "sw/fovea/program/exec_program.h"
 #include "sw/fovea/tools/stall_regions.h"
@@ -84,19 +81,19 @@ class BoardMachine : public Machine {
   Result run(const Request& request) override;
 
  private:
-  void open_window();
-  void close_window();
   std::string failure_text(const std::string& what) const;
   std::string reset_note(const board::ChipReset& reset, std::size_t before) const;
   std::string ended_text(const RunEnd::Met& met) const;
   SemihostingSettings semihosting_settings(const Request& request) const;
   std::optional<ElfImage> loader_of(const ElfImage& program, const Request& request) const;
-  void load_loader(const ElfImage& loader, const ElfImage& program, const Request& request);
+  void load_loader(const ElfImage& loader, const ElfImage& program);
   void load_page(const ElfImage& program, std::vector<std::uint8_t> page);
   ExecMap hosted_map() const;
 
   // The steps of run(), in their order.
   struct Session;
+  void open_window(Session& s);
+  void close_window(Session& s);
   std::vector<EndCondition> end_conditions(const Request& request) const;
   void build_board(const ElfImage& elf, const CameraInputs& cameras, const Request& request);
   void open_outputs(Session& s, const CameraInputs& cameras);
@@ -114,24 +111,11 @@ class BoardMachine : public Machine {
 
   board::BoardParams params_;
   std::unique_ptr<board::Board> board_;
-  Subscription window_;
   Symbols symbols_;
-  Tools tools_;
   std::unique_ptr<BoardFigures> figures_;
   std::unique_ptr<MosaicScore> mosaic_score_;
   std::unique_ptr<PictureScore> picture_score_;
 };
-
-void BoardMachine::open_window() {
-  figures_->open_window();
-  tools_.open_window();
-}
-
-void BoardMachine::close_window() {
-  if (figures_->closed()) return;
-  tools_.close_window();
-  figures_->close_window();
-}
 
 std::string BoardMachine::failure_text(const std::string& what) const {
   const auto& core = board_->dm365.arm.core();
@@ -173,8 +157,7 @@ std::optional<ElfImage> BoardMachine::loader_of(const ElfImage& program,
 }
 
 /// The loader leaves the registers in `start_state` (sw/firmware/boot/loader.h) when it jumps.
-void BoardMachine::load_loader(const ElfImage& loader, const ElfImage& program,
-                                  const Request&) {
+void BoardMachine::load_loader(const ElfImage& loader, const ElfImage& program) {
   const ElfSymbol* state = loader.find("start_state");
   FOVEA_CHECK(state && loader.segments().size() == 1, "the board's loader is the one of this build");
   const ElfSegment& segment = loader.segments().front();
@@ -239,12 +222,25 @@ struct BoardMachine::Session {
   std::optional<BoardConsole> console;
   BoardDebugMemory debug_memory;
   std::unique_ptr<RegisterLog> log;
+  Tools tools;
+  Subscription window;
   RunEnd run_end;
   std::optional<CoreSemihosting> semihosting;
   std::unique_ptr<GdbSession> gdb;
   HostTimeSlicer slicer;
   unsigned behind_end = 0;  ///< slices since an end condition was met or the window was closed
 };
+
+void BoardMachine::open_window(Session& s) {
+  figures_->open_window();
+  s.tools.open_window();
+}
+
+void BoardMachine::close_window(Session& s) {
+  if (figures_->closed()) return;
+  s.tools.close_window();
+  figures_->close_window();
+}
 
 /// When the run is to end. @throws UserError for a condition that does not go with the request
 std::vector<EndCondition> BoardMachine::end_conditions(const Request& request) const {
@@ -267,7 +263,7 @@ void BoardMachine::build_board(const ElfImage& elf, const CameraInputs& cameras,
   for (const auto& s : elf.segments()) {
     board_->load({s.address, s.data, s.memory_size - s.data.size()});
   }
-  if (loader) load_loader(*loader, elf, request);
+  if (loader) load_loader(*loader, elf);
   cpu::Core& core = board_->dm365.arm.core();
   cpu::RegionMap regions = core.regions();
   add_program_regions(regions, elf, memory_regions(params_));
@@ -280,22 +276,22 @@ void BoardMachine::build_board(const ElfImage& elf, const CameraInputs& cameras,
 void BoardMachine::open_outputs(Session& s, const CameraInputs& cameras) {
   auto& soc = board_->dm365;
   figures_ = std::make_unique<BoardFigures>(*board_, params_);
-  tools_.make(s.request.tools, {.params = s.request.params,
-                                .core = &soc.arm.core(),
-                                .program = program_file(params_).filename().string(),
-                                .symbols = &symbols_,
-                                .programs = {&s.program, s.request.symbols},
-                                .whole_run = !s.wants_frames(),
-                                .controller = &soc.ddr.controller(),
-                                .observe = [&soc](MemObserver& o) { return soc.scr.crossbar().observe(o); },
-                                .name_of = [](Master m) { return std::string(stat_name(m)); },
-                                .now = [] { return kernel_time(); },
-                                .log = s.log.get(),
-                                .memory = &soc.scr.memory(),
-                                .board = board_.get()});
+  s.tools.make(s.request.tools, {.params = s.request.params,
+                                 .core = &soc.arm.core(),
+                                 .program = program_file(params_).filename().string(),
+                                 .symbols = &symbols_,
+                                 .programs = {&s.program, s.request.symbols},
+                                 .whole_run = !s.wants_frames(),
+                                 .controller = &soc.ddr.controller(),
+                                 .observe = [&soc](MemObserver& o) { return soc.scr.crossbar().observe(o); },
+                                 .name_of = [](Master m) { return std::string(stat_name(m)); },
+                                 .now = [] { return kernel_time(); },
+                                 .log = s.log.get(),
+                                 .memory = &soc.scr.memory(),
+                                 .board = board_.get()});
   mosaic_score_ = MosaicScore::of(params_);
   picture_score_ = PictureScore::of(params_, cameras.views());
-  window_ = board_->observe_window([this](bool open) { open ? open_window() : close_window(); });
+  s.window = board_->observe_window([this, &s](bool open) { open ? open_window(s) : close_window(s); });
 }
 
 /// A displayed frame goes to the scores, the tools and the sinks. An error of a writer is kept and stops the run.
@@ -306,7 +302,7 @@ void BoardMachine::take_frame(Session& s, const CameraInputs& cameras, const vid
   if (s.failure) return;
   const PixelShape pixel = pixel_on_screen(params_.video);
   try {
-    tools_.frame(frame);
+    s.tools.frame(frame);
     for (FrameSink* sink : s.request.frames) sink->displayed(frame, pixel);
     for (FrameSink* sink : s.request.frames)
       if (sent.picture && sink->wants_sent())
@@ -389,7 +385,7 @@ bool BoardMachine::simulate(Session& s) {
   for (;;) {
     s.slicer.run(next_slice(s));
     take_timeline(*board_, request);
-    tools_.settle(board_->window_end().value_or(kernel_time()));
+    s.tools.settle(board_->window_end().value_or(kernel_time()));
     const std::uint64_t executed = arm.core().instructions_executed();
     request.progress.update({kernel_time(), board_->frames_in_window(),
                              s.wants_frames() ? params_.run.frames() : 0, executed,
@@ -443,8 +439,8 @@ void BoardMachine::collect(Session& s, Result& result) {
   const cpu::Counts counted = figures_->collect(result);
   if (mosaic_score_) mosaic_score_->add(result.stats, board_->camera_stats());
   if (picture_score_) picture_score_->add(result.stats);
-  tools_.settle(board_->window_end().value_or(kernel_time()));
-  tools_.finish(counted, result, result.lost);
+  s.tools.settle(board_->window_end().value_or(kernel_time()));
+  s.tools.finish(counted, result, result.lost);
   result.uart = board_->uart_text();
   result.kernel = kernel_that_ran(params_, result.uart);
   for (std::size_t i = 0; i < board_->resets().size(); ++i)
@@ -474,7 +470,7 @@ Result BoardMachine::run(const Request& request) {
       board_->observe_frames([&](const video::Frame& frame) { take_frame(session, cameras, frame); });
   if (!session.wants_frames()) {
     board_->measure_whole_run();
-    tools_.open_window();
+    session.tools.open_window();
   }
   attach_host(session);
 

@@ -9,6 +9,7 @@
 #include "model/video/scene/car_park.h"
 #include "model/video/scene/line_chart.h"
 #include "sw/fovea/files/ffmpeg.h"
+#include "sw/fovea/files/own_program.h"
 
 namespace fovea::app {
 
@@ -28,9 +29,7 @@ std::filesystem::path program_file(const board::BoardParams& params) {
 }
 
 std::filesystem::path built_program(const std::string& name) {
-  std::error_code error;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-  return self.parent_path() / "sw/firmware" / name;
+  return own_program().parent_path() / "sw/firmware" / name;
 }
 
 std::vector<MemoryRegion> memory_regions(const board::BoardParams& params) {

@@ -70,7 +70,7 @@ CLI::App* add_exec_command(CLI::App& app, ExecOptions& o) {
       ->type_name("DIR");
   add_set_option(*c, o.sets);
   c->add_option("-o,--out", o.out_dir,
-                "Folder for stats.json, stalls.csv, config.json and host.json")
+                "Folder for stats.json, stalls.csv, config.json, host.json and what the tools write")
       ->type_name("DIR");
   c->add_option("--gdb", o.gdb, "Wait for GDB on this port of this host; :0 takes a free one")
       ->type_name(":PORT");
@@ -231,8 +231,9 @@ int exec(const ExecOptions& o, const std::vector<std::string>& args, const CliCo
   static const std::atomic<bool> kNeverStops{false};
   refuse_combinations(o);
   const MachineKind kind = kind_of(o);
-  std::vector<AskedTool> tools =
-      o.tools.asked(tools_of(kind), !o.gdb.empty(), o.fast_memory ? "without --fast-memory" : "with --board");
+  std::vector<AskedTool> tools = o.tools.asked(tools_of(kind), !o.gdb.empty());
+  std::ostream nowhere(nullptr);
+  const WarningScope warnings(o.quiet ? nowhere : context.err, o.strict);  // outlives the machine, whose blocks warn
   const auto machine = context.make_machine(kind);
   ParamSet params;
   machine->declare(params);
@@ -241,8 +242,6 @@ int exec(const ExecOptions& o, const std::vector<std::string>& args, const CliCo
   o.tools.set_keys(params, experiment);
   const RunLimits limits = limits_of(o.limits);
   const std::optional<ElfImage> symbols = symbols_of(o.limits);
-  std::ostream nowhere(nullptr);
-  const WarningScope warnings(o.quiet ? nowhere : context.err, o.strict);
   warn_without_effect(params, experiment);
   if (o.fast_memory) warn_of_fast_memory(params, experiment);
   const ExecProgram program = program_of(o);

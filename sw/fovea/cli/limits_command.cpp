@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/own_program.h"
 #include "sw/fovea/files/warnings.h"
 #include "sw/fovea/limits/answers.h"
 #include "sw/fovea/limits/figure_names.h"
@@ -140,11 +141,6 @@ void warn_of_settings(const Session& session, const Settings& sets, const app::C
   app::warn_without_effect(run->params, run->experiment);
 }
 
-fs::path own_program() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error);
-}
-
 /// A failure counts most; without one, a single answer is enough.
 int status_of(const std::vector<std::unique_ptr<Study>>& studies) {
   int worst = 0;
@@ -161,7 +157,9 @@ CLI::App* add_options(CLI::App& app, LimitsOptions& o) {
   CLI::App* c = app.add_subcommand(
       "limits", "Run an experiment over settings (--over), search how far it can be stretched, find out what binds");
   c->footer(kFooter);
-  c->add_option("experiment", o.experiment, "Experiment file (YAML)")->required()->type_name("FILE");
+  c->add_option("experiment", o.experiment, "Experiment: a YAML file, or the name of a shipped one")
+      ->required()
+      ->type_name("FILE");
   app::add_set_option(*c, o.sets);
   c->add_option("--find", o.find, "Largest or smallest value of a numeric key that meets the conditions, in steps of "
                                   "1, of a 64th of the range, or of S with KEY=LOW..HIGH:S")
@@ -237,7 +235,7 @@ int find_limits(const LimitsOptions& o, const app::CliContext& context) {
   }
   for (const std::string& note : shared) app::say_note(note, context);
   points::PointStore store(dir);
-  points::Runner runner(store, {.program = own_program(),
+  points::Runner runner(store, {.program = app::own_program(),
                                 .jobs = o.jobs ? o.jobs : std::max(1u, std::thread::hardware_concurrency()),
                                 .retry_failed = o.retry_failed,
                                 .stop = context.stop,

@@ -185,9 +185,6 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
                                : fs::path("out") / fs::path(options.trace).stem(),
              "replay");
   options.tools.refuse_inside(dir);
-  // The hash of a long trace takes as long as a part of the replay; nothing but config.json needs it.
-  std::future<Provenance> provenance = std::async(std::launch::async, [&] { return origin_of(set, options); });
-
   trace::BoundedSource wrapped(one_line(options.trace), *trace.source,
                                {params.ddr.size_bytes(), true});
   SomeStreams source(options.wrap ? wrapped : *trace.source, left_out);
@@ -199,6 +196,8 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
                      .observe = [&path](MemObserver& o) { return path.observe(o); },
                      .name_of = [&path](Master m) { return path.label(m); },
                      .now = [&path] { return path.start(); }});
+  // The hash of a long trace takes as long as a part of the replay; nothing but config.json needs it.
+  std::future<Provenance> provenance = std::async(std::launch::async, [&] { return origin_of(set, options); });
   tools.open_window();
   const bool complete = replay_to_end(path, trace.info->start, context);
   path.finish();
@@ -235,6 +234,7 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& args, c
             files, args);
   say_note(dir.commit(complete), context);
   context.out << replay_words(stats, host, slowest);
+  context.out << output.table;
   for (const std::string& note : output.notes) context.out << one_line(note) << "\n";
   context.out << fmt::format("results in {}\n", one_line(dir.folder().string(), std::string::npos)) << std::flush;
   say_lost(lost, context);

@@ -215,7 +215,7 @@ void take_options(Request& request, const RunOptions& options, const CliContext&
 
 CLI::App* add_options(CLI::App& app, RunOptions& run) {
   CLI::App* c = app.add_subcommand("run", "Simulate an experiment");
-  c->add_option("experiment", run.experiment, "Experiment file (YAML)")
+  c->add_option("experiment", run.experiment, "Experiment: a YAML file, or the name of a shipped one")
       ->required()
       ->type_name("FILE");
   add_set_option(*c, run.sets);
@@ -244,13 +244,13 @@ CLI::App* add_options(CLI::App& app, RunOptions& run) {
 int run(const RunOptions& options, const std::vector<std::string>& args, const CliContext& context) {
   static const std::atomic<bool> kNeverStops{false};
   std::vector<AskedTool> tools = options.tools.asked(tools_of(MachineKind::kBoard), !options.gdb.empty());
+  const WarningScope warnings(context.err, options.strict);  // outlives the machine, whose blocks warn
   const auto machine = context.make_machine(MachineKind::kBoard);
   ParamSet params;
   machine->declare(params);
   add_replay_keys(params);
   Experiment experiment(params);
   load_experiment(options, params, experiment);
-  const WarningScope warnings(context.err, options.strict);
   // A condition that is refused has nothing to say about keys that need it.
   if (const ParamBase* until = params.find("run.until")) check_run_until(until->text());
   warn_without_effect(params, experiment);

@@ -28,16 +28,32 @@ void ToolOptions::add_to(CLI::App& command, std::span<const ToolRow> rows) {
     }
 }
 
-std::string ToolOptions::text_of(const Added& added) {
-  return *added.option->type ? added.given->results().back() : "";
+namespace {
+
+/// What of `exec` provides more; the other commands provide all that their options need.
+const char* what_provides(ToolNeeds needs) {
+  return needs == ToolNeeds::kBoard ? "with --board" : "without --fast-memory";
 }
 
-std::vector<AskedTool> ToolOptions::asked(ToolNeeds provided, bool debugger, const char* allowed) const {
+}  // namespace
+
+/// `--flag=false` counts as not given.
+bool ToolOptions::given(const Added& added) {
+  return added.given->count() && (*added.option->type || added.given->as<bool>());
+}
+
+/// A number in base 10, in whatever base it was given.
+std::string ToolOptions::text_of(const Added& added) {
+  if (!*added.option->type) return "";
+  return added.option->most ? std::to_string(added.given->as<std::uint64_t>()) : added.given->results().back();
+}
+
+std::vector<AskedTool> ToolOptions::asked(ToolNeeds provided, bool debugger) const {
   std::vector<AskedTool> out;
   for (const Added& a : added_) {
-    if (!a.given->count()) continue;
+    if (!given(a)) continue;
     if (a.row->needs > provided)
-      throw UserError(fmt::format("{}: {}; allowed: {}", a.option->name, a.row->lacks, allowed));
+      throw UserError(fmt::format("{}: {}; allowed: {}", a.option->name, a.row->lacks, what_provides(a.row->needs)));
     if (out.empty() || out.back().row != a.row) out.push_back({a.row, {}});
     out.back().values.set(a.option->name, text_of(a));
   }
@@ -48,7 +64,7 @@ std::vector<AskedTool> ToolOptions::asked(ToolNeeds provided, bool debugger, con
 
 void ToolOptions::set_keys(const ParamSet& params, Experiment& experiment) const {
   for (const Added& a : added_) {
-    if (!a.given->count() || !a.row->keys) continue;
+    if (!given(a) || !a.row->keys) continue;
     ToolValues values;
     values.set(a.option->name, text_of(a));
     a.row->keys(values, params, experiment);

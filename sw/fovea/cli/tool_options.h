@@ -19,9 +19,8 @@ class ToolOptions {
  public:
   /// Adds the options of these rows, which outlive the command.
   void add_to(CLI::App& command, std::span<const ToolRow> rows);
-  /// Those of which an option was given. @param provided by the machine @param allowed what would provide more, for the
-  /// refusal: "with --board" @throws UserError
-  std::vector<AskedTool> asked(ToolNeeds provided, bool debugger, const char* allowed = "") const;
+  /// Those of which an option was given. @param provided by the machine @throws UserError
+  std::vector<AskedTool> asked(ToolNeeds provided, bool debugger) const;
   /// Sets the keys that some options stand for. @throws UserError
   void set_keys(const ParamSet& params, Experiment& experiment) const;
   /// A file that a tool writes must not lie among the results. @throws UserError
@@ -33,6 +32,7 @@ class ToolOptions {
     const ToolOption* option;
     const CLI::Option* given;
   };
+  static bool given(const Added& added);
   static std::string text_of(const Added& added);
   std::vector<Added> added_;
 };

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sw/fovea/files/checked_file.h"
+#include "sw/fovea/files/own_program.h"
 #include "sw/fovea/files/safe_yaml.h"
 
 namespace fovea::app {
@@ -243,8 +244,39 @@ void Experiment::set(std::string_view key, std::string value, const fs::path& fo
   params_.set(key, value);
 }
 
-void Experiment::load(const fs::path& file) {
+namespace {
+
+/// The names and files of the shipped experiments: those of the installed program, or of the source tree in whose
+/// folder build/PRESET the program lies.
+std::map<std::string, fs::path> shipped_experiments() {
+  std::map<std::string, fs::path> out;
+  const fs::path above = own_program().parent_path().parent_path().parent_path();
+  for (const char* place : {"share/fovea/scripts/experiments", "scripts/experiments"}) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(above / place, error))
+      if (entry.path().extension() == ".yaml") out.emplace(entry.path().stem().string(), entry.path());
+    if (!out.empty()) break;
+  }
+  return out;
+}
+
+/// The file that is meant by a name.
+fs::path experiment_file(const fs::path& name) {
+  std::error_code error;
+  if (fs::exists(name, error) || name.has_parent_path() || name.has_extension()) return name;
+  const std::map<std::string, fs::path> shipped = shipped_experiments();
+  if (const auto found = shipped.find(name.string()); found != shipped.end()) return found->second;
+  std::string names;
+  for (const auto& [known, file] : shipped) names += (names.empty() ? "" : ", ") + known;
+  throw UserError(fmt::format("'{}' is neither a file nor a shipped experiment; allowed: a file name{}{}",
+                              one_line(name.string()), names.empty() ? "" : ", ", names));
+}
+
+}  // namespace
+
+void Experiment::load(const fs::path& name) {
   std::vector<fs::path> chain;
+  const fs::path file = experiment_file(name);
   load(file, chain);
   name_ = file.stem().string();
 }

@@ -36,8 +36,9 @@ class Experiment {
  public:
   explicit Experiment(ParamSet& params) : params_(params) {}
 
-  /// Reads the experiment file. @throws UserError
-  void load(const std::filesystem::path& file);
+  /// Reads an experiment: a file or, where no file has that name, a shipped one by its name alone ("paper-pal").
+  /// @throws UserError
+  void load(const std::filesystem::path& name);
   /// Sets a key from a file without lines (a trace, a calibration). @throws UserError
   void preset(std::string_view key, std::string_view value, const std::string& file);
   /// Sets a key to the value of another one. @throws UserError

@@ -66,11 +66,12 @@ Result CoreMachine::run_board(const Request& request, const ExecMap& map,
   // simulation.
   sc_core::sc_report_handler::set_actions("/OSCI/SystemC", sc_core::SC_INFO,
                                           sc_core::SC_DO_NOTHING);
+  std::unique_ptr<RegisterLog> log;  // outlives the session's tools
   ExecSession session(arm.core(), *board_, request, map, ExecBoard::register_regions());
   session.load(board_->ram(), board_->tcm());
   const std::vector<RegisterBlock> blocks = register_blocks(board_->platform);
-  const auto log = register_log(blocks, board_->config, arm.core(),
-                                [&](std::uint32_t pc) { return session.describe(pc); });
+  log = register_log(blocks, board_->config, arm.core(),
+                     [&](std::uint32_t pc) { return session.describe(pc); });
   session.attach_tools({.params = request.params,
                         .controller = &board_->ddr.controller(),
                         .observe = [this](MemObserver& o) { return board_->scr.crossbar().observe(o); },

@@ -4,6 +4,7 @@
 
 #include "sw/fovea/config/calibration.h"
 #include "sw/fovea/config/shared_pictures.h"
+#include "sw/fovea/files/own_program.h"
 #include "sw/fovea/results/provenance.h"
 
 namespace fovea::app {
@@ -42,10 +43,7 @@ std::string identity_of(const EffectiveRun& run, const std::string& program) {
 }
 
 std::string program_hash() {
-  static const std::string hash = [] {
-    std::error_code error;
-    return sha256_of(std::filesystem::read_symlink("/proc/self/exe", error));
-  }();
+  static const std::string hash = sha256_of(own_program());
   return hash;
 }
 

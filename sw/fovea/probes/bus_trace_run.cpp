@@ -38,6 +38,7 @@ void BusTraceRun::open() {
 }
 
 void BusTraceRun::close() {
+  if (!opened_) return;
   const trace::BusTap& tap = board_.dm365.tap;
   if (!(core_ == tap.core() && scr_ == tap.scr() && ddr_ == tap.ddr()))
     board_.dm365.diagnostics().not_modelled("a clock that changes inside a bus trace");
@@ -45,8 +46,8 @@ void BusTraceRun::close() {
   closed_ = true;
 }
 
-void BusTraceRun::finish() {
-  if (!opened_ || !closed_) return;
+std::string BusTraceRun::finish() {
+  if (!opened_ || !closed_) return "the bus trace: nothing was recorded; the measured window did not open";
   trace::TraceInfo info;
   info.scr = scr_;
   info.ddr = ddr_;
@@ -55,6 +56,7 @@ void BusTraceRun::finish() {
                             ddr_.frequency);
   recorder_->finish(std::move(info), [this](std::string_view bytes) { file_.write(bytes); });
   file_.commit();
+  return "";
 }
 
 namespace {
@@ -64,7 +66,9 @@ class BusTraceTool final : public Tool {
   BusTraceTool(const std::string& file, const ToolParts& parts) : trace_(file, parts.params, *parts.board) {}
   void open_window() override { trace_.open(); }
   void close_window() override { trace_.close(); }
-  void finish(const cpu::Counts&, ToolOutput&) override { trace_.finish(); }
+  void finish(const cpu::Counts&, ToolOutput& output) override {
+    if (std::string note = trace_.finish(); !note.empty()) output.notes.push_back(std::move(note));
+  }
 
  private:
   BusTraceRun trace_;
@@ -75,7 +79,7 @@ class BusTraceTool final : public Tool {
 ToolRow bus_trace_tool() {
   return {.what = "the bus trace",
           .needs = ToolNeeds::kBoard,
-          .lacks = "there is no window of displayed frames",
+          .lacks = "there is no window of displayed frames (frames in 'run.until')",
           .options = {{"--bus-trace", "FILE", "Write all requests to the SDRAM in the measured window to this file",
                        "a file name is needed"}},
           .make = [](const ToolValues& v, const ToolParts& parts) -> std::unique_ptr<Tool> {

@@ -17,8 +17,8 @@ class BusTraceRun {
   BusTraceRun(const std::filesystem::path& file, const ParamSet& params, board::Board& board);
   void open();
   void close();
-  /// @throws UserError if the file cannot be written
-  void finish();
+  /// @return why there is no trace; "" if there is one @throws UserError if the file cannot be written
+  std::string finish();
 
  private:
   OutputFile file_;

@@ -66,8 +66,6 @@ PerfettoRun::PerfettoRun(const PerfettoRequest& request, board::Board& board)
   if (from) begin_at(*from);
 }
 
-PerfettoRun::~PerfettoRun() { end(); }
-
 bool PerfettoRun::wants_functions() const { return file_->wants("firmware", "functions 01"); }
 
 void PerfettoRun::watch_functions(cpu::ClockProfile& profile, PerfettoFunctions::Name name) {

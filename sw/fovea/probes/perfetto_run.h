@@ -35,7 +35,6 @@ class PerfettoRun final : private MemObserver {
   /// To be constructed before the simulation starts. The file is opened, and the expression checked.
   /// @throws UserError
   PerfettoRun(const PerfettoRequest& request, board::Board& board);
-  ~PerfettoRun() override;
   PerfettoRun(const PerfettoRun&) = delete;
   PerfettoRun& operator=(const PerfettoRun&) = delete;
 

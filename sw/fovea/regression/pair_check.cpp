@@ -15,6 +15,7 @@
 #include "model/common/check.h"
 #include "sw/fovea/files/checked_file.h"
 #include "sw/fovea/files/ffmpeg.h"
+#include "sw/fovea/files/own_program.h"
 #include "sw/fovea/points/child.h"
 #include "sw/fovea/regression/first_baseline.h"
 
@@ -83,8 +84,7 @@ class OneRun {
 };
 
 std::vector<std::string> command_of(const PairRequest& request, const std::string& program, const fs::path& folder) {
-  std::error_code error;
-  std::vector<std::string> out = {fs::read_symlink("/proc/self/exe", error).string(), "run", request.experiment};
+  std::vector<std::string> out = {app::own_program().string(), "run", request.experiment};
   for (const auto& s : request.settings) out.insert(out.end(), {"-s", s});
   out.insert(out.end(), {"-s", "firmware.elf=" + program, "--profile", "--no-frames", "-o", folder.string()});
   return out;

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <memory>
 
+#include "sw/fovea/files/own_program.h"
+
 namespace fovea::app {
 namespace {
 
@@ -48,8 +50,7 @@ std::string sha256_of(const fs::path& file) {
 
 Provenance program_provenance() {
   Provenance out{.version = FOVEA_VERSION, .commit = "unknown"};
-  std::error_code error;
-  std::ifstream file(fs::read_symlink("/proc/self/exe", error).parent_path() / "fovea.commit");
+  std::ifstream file(own_program().parent_path() / "fovea.commit");
   std::string commit;
   if (!std::getline(file, commit) || commit.empty()) return out;
   if (commit.ends_with(kModified)) {

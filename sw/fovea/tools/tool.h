@@ -62,7 +62,6 @@ struct ToolOption {
 class ToolValues {
  public:
   void set(const std::string& name, std::string text) { values_[name] = std::move(text); }
-  bool any() const { return !values_.empty(); }
   bool given(const std::string& name) const { return values_.contains(name); }
   /// @return `otherwise` if the option was not given
   std::string text(const std::string& name, const std::string& otherwise = "") const {
@@ -88,7 +87,7 @@ struct ToolParts {
   mem::DdrController* controller = nullptr;
   std::function<Subscription(MemObserver&)> observe = {};  ///< the requests to the SDRAM
   std::function<std::string(Master)> name_of = {};         ///< of a master, in the figures of this machine
-  std::function<Picoseconds()> now = {};
+  std::function<Picoseconds()> now = {};  ///< the present time; in a replay, that of its first request
   RegisterLog* log = nullptr;
   memsys::MemorySystem* memory = nullptr;
   board::Board* board = nullptr;
@@ -110,7 +109,7 @@ class Tool {
   /// The measured window begins, or ends, at the present time.
   virtual void open_window() {}
   virtual void close_window() {}
-  /// Now and then, with a time up to which all is decided.
+  /// On the board, now and then, with a time up to which all is decided.
   virtual void settle(Picoseconds) {}
   /// A frame of the window was displayed. May throw UserError.
   virtual void frame(const video::Frame&) {}
