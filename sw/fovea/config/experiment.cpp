@@ -263,7 +263,8 @@ std::map<std::string, fs::path> shipped_experiments() {
 /// The file that is meant by a name.
 fs::path experiment_file(const fs::path& name) {
   std::error_code error;
-  if (fs::exists(name, error) || name.has_parent_path() || name.has_extension()) return name;
+  const bool taken = fs::exists(name, error) && !fs::is_directory(name, error);
+  if (taken || name.has_parent_path() || name.has_extension()) return name;
   const std::map<std::string, fs::path> shipped = shipped_experiments();
   if (const auto found = shipped.find(name.string()); found != shipped.end()) return found->second;
   std::string names;
