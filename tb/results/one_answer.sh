@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Each command that reads a folder of results gives the same answer about one that was edited or damaged.
-# Usage: one_answer.sh FOVEA OUT
+# Usage: one_answer.sh FOVEA OUT PYTHON
+#   PYTHON  the folder of the Python package, which gives that answer, too
 set -uo pipefail
-fovea=$1 out=$2
+fovea=$1 out=$2 python=$3
 rm -rf "$out"
 mkdir -p "$out"
 cd "$out" || exit 1
@@ -32,6 +33,10 @@ answer() {
       grep -qF -- "$want" <<<"$got" || fail "$name, $command: no '$want' in: $got"
     fi
   done
+  got=$(PYTHONPATH=$python python3 -c 'import sys, fovea; fovea.read(sys.argv[1]).stalls' "$name" 2>&1)
+  [ "$want" = 0 ] && want=
+  [ -z "$want$got" ] || { [ -n "$want" ] && grep -qF -- "ResultsError: $want" <<<"$got"; } ||
+    fail "$name, Python: expected '$want': $got"
 }
 copy() { cp -r a "$1"; }
 
@@ -69,5 +74,5 @@ for command in "compare a cell" "report --text cell"; do
   got=$("$fovea" $command 2>&1 >/dev/null)
   grep -qF "cell/stalls.csv:2: 'many' is not a whole number" <<<"$got" || fail "cell, $command: $got"
 done
-[ "$failures" = 0 ] && echo "12 folders, 5 commands: one answer each"
+[ "$failures" = 0 ] && echo "12 folders, 5 commands and Python: one answer each"
 exit "$((failures > 0))"
