@@ -46,10 +46,12 @@ if "load.1.gap" in settings:
     gap = float(settings["load.1.gap"].removesuffix("ns")) * 1e-9
     load = int(settings["load.1.outstanding"]) * 64 / (gap + 400e-9)
 load = min(load, float(os.environ.get("MOST", "1e12")))
-stats = {"complete": True, "frame.window": {"value": .08}, "bus.load.write_bytes": {"value": load * .08},
-         "frame.remap_rate": {"value": float(os.environ["RATE"]) - load / 1e6}}
-with open(os.path.join(out, "points", "p", "run", "stats.json"), "w") as f:
-    json.dump(stats, f)
+figures = {"frame.window": .08, "bus.load.write_bytes": load * .08,
+           "frame.remap_rate": float(os.environ["RATE"]) - load / 1e6}
+stats = {"complete": True, **{name: {"value": value, "unit": "1"} for name, value in figures.items()}}
+for name, text in ("stats", stats), ("config", {"format": "fovea run 1", "params": {}}):
+    with open(os.path.join(out, "points", "p", "run", name + ".json"), "w") as f:
+        json.dump(text, f)
 with open(os.path.join(out, "limits.csv"), "w") as f:
     f.write("firmware.kernel\nx\n")
 with open(os.path.join(out, "points.csv"), "w") as f:

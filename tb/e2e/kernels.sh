@@ -61,12 +61,12 @@ stats = {"frame.remapped": 10, "frame.remap_rate": 96.0, "frame.remap_time.mean"
 def put(name, text):
     with open(os.path.join(folder, name), "w") as f:
         f.write(text)
-put("stats.json", json.dumps({"complete": True, **{k: {"value": v} for k, v in stats.items()}}))
+put("stats.json", json.dumps({"complete": True, **{k: {"value": v, "unit": "1"} for k, v in stats.items()}}))
 put("stalls.csv", "cause,region,culprit,cycles\nuncached,registers,core,300\nuncached,registers,bridge,200\n"
     "uncached,.stacks,core,7000\ndcache,registers,core,9000\n")
 def belief(value, low, high):
     return {"value": value, "belief": {"low": low, "high": high}}
-put("config.json", json.dumps({"params": {"run.frames": {"value": "26", "belief": None},
+put("config.json", json.dumps({"format": "fovea run 1", "params": {"run.frames": {"value": "26", "belief": None},
     "bus.arm_d.width": belief("32bit", "32bit", "64bit"), "bus.load.w": belief("2", "1", "3"),
     "bus.edma_tc0.w": belief("2", "1", "2"), "bus.edma_tc1.w": belief("2", "1", "2"),
     "cpu.x": belief("5", "1", "9"), "cpu.same": belief("5", "5", "5"), "cpu.none": {"value": "5", "belief": None},

@@ -7,6 +7,8 @@ dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 mkdir -p "$dir/tree/scripts/experiments" "$dir/tree/build/release" "$dir/bin" "$dir/elsewhere"
 cp "$source"/scripts/{run,build,test,figures,kernels,linux,sanitize,nightly,package,baselines} "$dir/tree/scripts/"
+mkdir -p "$dir/tree/sw"
+cp -r "$source/sw/python" "$dir/tree/sw/"
 mkdir "$dir/tree/.ci"
 cp "$source/.ci/run" "$dir/tree/.ci/"
 cp "$source/CMakeLists.txt" "$dir/tree/"
