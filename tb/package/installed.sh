@@ -38,7 +38,12 @@ done
 "$root/bin/fovea" report "$1" -o page.html >log 2>&1 && [ -s page.html ] || fail "report: $(<log)"
 [ "$(man "$root/share/man/man1/fovea.1" 2>/dev/null | grep -c fovea)" -gt 20 ] ||
   [ "$(grep -c fovea "$root/share/man/man1/fovea.1")" -gt 20 ] || fail 'no manual page'
-bash -c "source '$root/share/bash-completion/completions/fovea' && complete -p fovea" >log 2>&1 || fail "completion: $(<log)"
+offered() {  # WORD...: what completes the last one
+  bash -c "source '$root/share/bash-completion/completions/fovea'
+    COMP_WORDS=($(printf ' %q' "$@")) COMP_CWORD=$(($# - 1)); _fovea; echo \${COMPREPLY[*]}" 2>&1
+}
+[ "$(offered fovea run paper-p)" = paper-pal ] && [ "$(offered fovea run -s firmware.kernel = offs)" = offsets16 ] &&
+  [ "$(offered fovea limits two-cameras-)" = two-cameras-free ] || fail "completion: $(offered fovea run paper-p)"
 python3 - "$root" <<'P' || fail 'the manual or Python is not complete'
 import os, pathlib, re, sys
 root = pathlib.Path(sys.argv[1])

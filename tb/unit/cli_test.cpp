@@ -320,6 +320,10 @@ TEST_F(CliTest, CompletionOffersWhatIsDeclared) {
   EXPECT_EQ(offer("fovea run --sync = s"), "strict\n");
   EXPECT_EQ(offer("fovea run -s run.fr"), "run.frames=\n");
   EXPECT_EQ(offer("fovea replay -s ddr.tRF"), "ddr.tRFC=\n");
+  EXPECT_EQ(offer("fovea run -s run.mode = slo"), "slow\n");
+  EXPECT_EQ(offer("fovea run -s run.mode ="), offer("fovea run -s run.mode = "));
+  EXPECT_EQ(offer("fovea run -s run.frames = 1"), "\n") << "a number is no choice of words";
+  EXPECT_EQ(offer("fovea replay -s ddr.scheduler = fcf"), "fcfs\n");
   EXPECT_EQ(offer("fovea completion b"), "bash\n");
   EXPECT_EQ(offer("fovea trace conv"), "convert\n");
   EXPECT_EQ(offer("fovea trace convert --wr"), "--wrap\n");

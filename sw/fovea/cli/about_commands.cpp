@@ -29,7 +29,7 @@ int list_params(const ParamsOptions& o, const CliContext& context) {
 }
 
 int print_completion(const Call& call) {
-  std::map<std::string, std::vector<std::string>> keys;
+  std::map<std::string, std::vector<OfferedKey>> keys;
   CLI::App other;  // of which only the rows are needed
   for (const Command& c : add_commands(other))
     if (c.keys) keys[c.options->get_name()] = c.keys(call.context);
@@ -39,9 +39,14 @@ int print_completion(const Call& call) {
 
 }  // namespace
 
-std::vector<std::string> keys_of(const ParamSet& params) {
-  std::vector<std::string> out;
-  for (const auto* p : params.all()) out.push_back(p->key());
+std::vector<OfferedKey> keys_of(const ParamSet& params) {
+  std::vector<OfferedKey> out;
+  for (const auto* p : params.all()) {
+    std::string words;
+    if (p->unit() == "word" || p->unit() == "bool") words = p->allowed();
+    std::erase(words, ',');
+    out.push_back({p->key(), words});
+  }
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "sw/fovea/config/experiment.h"
 #include "sw/fovea/explain/wrapped.h"
 
 namespace fovea::app {
@@ -116,7 +117,7 @@ std::string HelpFormatter::make_footer(const CLI::App* app) const {
 namespace {
 
 /// What completes a subcommand: its options and words, and those of its parts.
-std::string completion_case(const CLI::App& c, const std::map<std::string, std::vector<std::string>>& keys) {
+std::string completion_case(const CLI::App& c, const std::map<std::string, std::vector<OfferedKey>>& keys) {
   std::string names, words;
   const auto add_names = [&names](const CLI::App& of) {
     for (const auto* o : options_of(of, false))
@@ -129,37 +130,47 @@ std::string completion_case(const CLI::App& c, const std::map<std::string, std::
     words += (words.empty() ? "" : " ") + part->get_name();
     add_names(*part);
   }
-  for (const auto* o : options_of(c, true))
+  for (const auto* o : options_of(c, true)) {
+    if (o->get_name() == "experiment") words = fmt::format("{}", fmt::join(shipped_experiments(), " "));
     if (const auto list = words_of(*o); !list.empty()) words = fmt::format("{}", fmt::join(list, " "));
+  }
   std::string out = fmt::format("    {}) options='{}' words='{}'", c.get_name(), names, words);
-  if (const auto k = keys.find(c.get_name()); k != keys.end())
-    out += fmt::format(" keys='{}'", fmt::join(k->second, " "));
+  if (const auto k = keys.find(c.get_name()); k != keys.end()) {
+    out += " keys='";
+    for (const OfferedKey& key : k->second) out += (&key == &k->second.front() ? "" : " ") + key.key;
+    out += "'";
+  }
   return out + " ;;\n";
 }
 
-/// What completes the value of each option that allows certain words only.
-std::string completion_values(const CLI::App& c) {
+std::string value_case(const std::string& before, const std::string& words) {
+  return fmt::format("    {}) COMPREPLY=($(compgen -W '{}' -- \"$current\")); return ;;\n", before, words);
+}
+
+/// What completes the value of each option that allows certain words only, and of each key behind -s.
+std::string completion_values(const CLI::App& c, const std::map<std::string, std::vector<OfferedKey>>& keys) {
   std::string out;
+  if (const auto k = keys.find(c.get_name()); k != keys.end())
+    for (const OfferedKey& key : k->second)
+      if (!key.words.empty()) out += value_case(fmt::format("'{} {}'", c.get_name(), key.key), key.words);
   auto options = options_of(c, false);
   for (const auto* part : commands_of(c))
     for (const auto* o : options_of(*part, false)) options.push_back(o);
   for (const auto* o : options)
     if (const auto list = words_of(*o); !list.empty())
       for (const auto& name : names_of(*o))
-        out += fmt::format("    '{} {}') COMPREPLY=($(compgen -W '{}' -- \"$current\")); return ;;\n",
-                           c.get_name(), name, fmt::join(list, " "));
+        out += value_case(fmt::format("'{} {}'", c.get_name(), name), fmt::format("{}", fmt::join(list, " ")));
   return out;
 }
 
 }  // namespace
 
-std::string bash_completion(const CLI::App& app,
-                            const std::map<std::string, std::vector<std::string>>& keys) {
+std::string bash_completion(const CLI::App& app, const std::map<std::string, std::vector<OfferedKey>>& keys) {
   std::string commands, cases, values;
   for (const auto* c : commands_of(app)) {
     commands += (commands.empty() ? "" : " ") + c->get_name();
     cases += completion_case(*c, keys);
-    values += completion_values(*c);
+    values += completion_values(*c, keys);
   }
   return "# Completion for bash: source it, or put it into /etc/bash_completion.d.\n"
          "_fovea() {\n"

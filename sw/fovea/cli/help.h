@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sw/fovea/cli/command_row.h"
+
 namespace fovea::app {
 
 /// Help with at most 80 columns, including the default of each option that has one.
@@ -16,10 +18,9 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_footer(const CLI::App* app) const override;
 };
 
-/// Completion script for bash: commands, options, the words that an option allows and, after -s,
-/// the keys that `keys` lists for the command.
-std::string bash_completion(const CLI::App& app,
-                            const std::map<std::string, std::vector<std::string>>& keys);
+/// Completion script for bash: commands, options, the words that an option allows, shipped experiments and, after -s,
+/// the keys that `keys` lists for the command with their words.
+std::string bash_completion(const CLI::App& app, const std::map<std::string, std::vector<OfferedKey>>& keys);
 
 /// The manual page in the format of `man -l`.
 std::string man_page(const CLI::App& app, const std::string& version);

@@ -300,7 +300,7 @@ int run(const RunOptions& options, const std::vector<std::string>& args, const C
 
 }  // namespace
 
-std::vector<std::string> keys_of_run(const CliContext& context) {
+std::vector<OfferedKey> keys_of_run(const CliContext& context) {
   ParamSet params;
   const auto machine = context.make_machine(MachineKind::kBoard);
   machine->declare(params);

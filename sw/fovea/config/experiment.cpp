@@ -246,9 +246,8 @@ void Experiment::set(std::string_view key, std::string value, const fs::path& fo
 
 namespace {
 
-/// The names and files of the shipped experiments: those of the installed program, or of the source tree in whose
-/// folder build/PRESET the program lies.
-std::map<std::string, fs::path> shipped_experiments() {
+/// The files of the shipped experiments by name.
+std::map<std::string, fs::path> shipped_files() {
   std::map<std::string, fs::path> out;
   const fs::path above = own_program().parent_path().parent_path().parent_path();
   for (const char* place : {"share/fovea/scripts/experiments", "scripts/experiments"}) {
@@ -265,7 +264,7 @@ fs::path experiment_file(const fs::path& name) {
   std::error_code error;
   const bool taken = fs::exists(name, error) && !fs::is_directory(name, error);
   if (taken || name.has_parent_path() || name.has_extension()) return name;
-  const std::map<std::string, fs::path> shipped = shipped_experiments();
+  const std::map<std::string, fs::path> shipped = shipped_files();
   if (const auto found = shipped.find(name.string()); found != shipped.end()) return found->second;
   std::string names;
   for (const auto& [known, file] : shipped) names += (names.empty() ? "" : ", ") + known;
@@ -274,6 +273,12 @@ fs::path experiment_file(const fs::path& name) {
 }
 
 }  // namespace
+
+std::vector<std::string> shipped_experiments() {
+  std::vector<std::string> out;
+  for (const auto& [name, file] : shipped_files()) out.push_back(name);
+  return out;
+}
 
 void Experiment::load(const fs::path& name) {
   std::vector<fs::path> chain;

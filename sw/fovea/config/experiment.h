@@ -10,6 +10,10 @@
 
 namespace fovea::app {
 
+/// The names of the shipped experiments: those of the installed program, or of the source tree in whose folder
+/// build/PRESET the program lies. Experiment::load() takes them.
+std::vector<std::string> shipped_experiments();
+
 /// Where the value of a parameter was given.
 struct ValueOrigin {
   enum class Kind { kDefault, kFile, kCommandLine, kOtherKey };
