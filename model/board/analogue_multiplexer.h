@@ -16,7 +16,7 @@ class AnalogueMultiplexer {
   /// @param switched called with the channel that is led through from now on, at each change
   explicit AnalogueMultiplexer(std::function<void(unsigned channel)> switched) : switched_(std::move(switched)) {}
 
-  /// The levels on the select lines, line n in bit n; a line that nobody drives is low.
+  /// The levels on the select lines, line n in bit n; a line that nothing drives is low.
   void select(unsigned levels);
   /// A line is broken: it has this level, whatever drives it; nothing: it is whole again.
   void stick(unsigned line, std::optional<bool> level);

@@ -5,7 +5,7 @@
 namespace fovea::board {
 namespace {
 
-/// For a decoder without cameras.
+/// A black picture, for a decoder to which no camera is connected.
 class NoPicture : public video::PictureSource {
  public:
   unsigned width() const override { return black_.width; }

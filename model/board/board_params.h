@@ -77,7 +77,7 @@ struct ClockParams : ParamGroup {
 /// A picture that camera and display may have: the raster that carries it, and its size. The DIP switches say both.
 struct VideoFormat {
   std::string_view name;
-  bool is_625;             ///< the display is 625/50, otherwise 525/60; so is a camera behind the decoder
+  bool is_625;             ///< 625/50, otherwise 525/60: the display and any camera behind the decoder
   unsigned width, height;  ///< of what is corrected and shown, in the middle of the raster's active lines
   unsigned camera_height;  ///< of the picture that the camera sends
   std::uint32_t size_code; ///< enum switch_size of what is shown

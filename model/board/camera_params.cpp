@@ -21,7 +21,7 @@ constexpr std::array<Input, 10> kInputs{{{"vi_1_a", 0x0},
                                          {"vi_3_b", 0x9},
                                          {"vi_3_c", 0xA},
                                          {"vi_4_a", 0xC}}};
-/// Of camera 0 as on TI's evaluation module; the others take the inputs beside it.
+/// The default decoder input of each camera: for camera 0 as on TI's evaluation module, for the others those beside it.
 constexpr std::array<const char*, kCamerasMax> kInputOf{"vi_2_b", "vi_2_a", "vi_2_c", "vi_1_a",
                                                         "vi_1_b", "vi_1_c", "vi_3_a", "vi_3_b"};
 

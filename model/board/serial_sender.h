@@ -1,4 +1,4 @@
-// Who types on a serial line: the far end of a UART's receiver.
+// Sends bytes into a UART's receiver, as a terminal at the far end of the serial line would.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -99,7 +99,7 @@ void ConfigBus::fill(tlm::tlm_generic_payload& gp, MemRequest& r, std::uint32_t 
 }
 
 /// The next access of the port's oldest request, at its time. An access of a single request may be
-/// unaligned or of 3 bytes: the block says what it thinks of that.
+/// unaligned or of 3 bytes: the block accepts or refuses it.
 void ConfigBus::access(Port& port) {
   UnderWay& next = port.under_way.front();
   MemRequest& r = *next.request;

@@ -20,10 +20,10 @@ namespace fovea::bus {
 /// the horizon H, the next event pending in the kernel; while it works it holds the memory path and
 /// takes the path's events itself. Whatever lies at or beyond H waits for the kernel.
 ///
-/// A class template for its own work beside the path, called at every step: Self may hide
-/// background_next(), background_act() and completed().
+/// The derived class, Self, can do background work beside the path: if it hides background_next(),
+/// background_act() or completed(), its own functions are called at every step.
 ///
-/// MemInitiatorIf is a public base although nobody else calls it: it has SystemC's virtual base,
+/// MemInitiatorIf is a public base although only the own sockets call it: it has SystemC's virtual base,
 /// which the most derived class destroys, and a private base would bar the way to it (CWG 7).
 template <class Self>
 class LookaheadInitiator : public sc_core::sc_module, public MemInitiatorIf {
@@ -81,7 +81,7 @@ class LookaheadInitiator : public sc_core::sc_module, public MemInitiatorIf {
       const Picoseconds h = next_event();
       if (std::min(t, h) >= until) return false;
       if (t >= h) {
-        // Somebody else may still act before `until`: let the kernel get there.
+        // Another process may still act before `until`: wait in the kernel.
         sleep_until(until);
         return tx.done && tx.last <= until;
       }
@@ -99,7 +99,7 @@ class LookaheadInitiator : public sc_core::sc_module, public MemInitiatorIf {
     sc_core::wait(timer.event());
     enter();
   }
-  /// Lets everybody else act before `until`; afterwards nothing is pending before it.
+  /// Lets all other processes act before `until`; afterwards nothing is pending before it.
   [[gnu::noinline]] void sleep_until(Picoseconds until) {
     const Picoseconds now = now_;
     if (until <= now) return;
@@ -126,14 +126,14 @@ class LookaheadInitiator : public sc_core::sc_module, public MemInitiatorIf {
   }
   /// From the issue of a request on this port to its outcome it takes at least this long.
   Picoseconds least_latency(unsigned port) const { return ports_[port].least_latency; }
-  /// Nobody else acts before this time: no kernel event, and no decision of the path about a
-  /// request of somebody else that may let it act, or about an own one that may let a register block
+  /// No other process acts before this time: there is no kernel event, and no decision of the path about another
+  /// master's request that may let that master act, or about an own request that may let a register block
   /// act.
   Picoseconds horizon() {
     const Picoseconds h = next_event();
     return memory_->undecided() > own_undecided_ ? std::min(h, next_decision()) : h;
   }
-  /// Its outcome lets nobody else act by itself.
+  /// True for an access to the SDRAM: its completion by itself triggers no other process.
   bool in_memory(const Transaction& tx) const { return tx.address >= sdram_base_; }
   /// The time of the next background work is another one now.
   void background_moved() {

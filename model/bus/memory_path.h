@@ -14,7 +14,7 @@ class MemoryPathIf : public virtual sc_core::sc_interface {
   /// Called at the start and at the end of an activation of the initiator.
   virtual void hold() = 0;
   virtual void release() = 0;
-  /// --sync=strict: every bus access waits for the kernel; nobody advances ahead of it.
+  /// --sync=strict: every bus access waits for the kernel; no process works ahead of it.
   virtual bool strict() const = 0;
 };
 

@@ -32,7 +32,7 @@ Scr::Scr(sc_core::sc_module_name name, const CrossbarParams& params, const mem::
   dont_initialize();
 }
 
-/// Of all ports that statistics name so.
+/// Latencies of all ports that share this name in the statistics.
 std::vector<PortLatencies*> Scr::latencies_of(std::size_t stat) {
   std::vector<PortLatencies*> out;
   for (const MasterInfo& m : kMasters.rows)
@@ -61,8 +61,8 @@ void Scr::release() {
 
 void Scr::arm() { due_.at(memory_.next_event()); }
 
-/// The kernel's turn: takes the events that are due, and in default mode those before the next event of
-/// anybody else. Requests that come meanwhile set no timer: it would end the turn at the path's own event.
+/// The kernel's turn: takes the events that are due, and in default mode also those before the next kernel event of
+/// another process. Requests that come meanwhile set no timer: it would end the turn at the path's own event.
 void Scr::advance_by_kernel() {
   if (held_) return;
   const Picoseconds now = now_();

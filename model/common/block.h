@@ -35,7 +35,7 @@ enum class ResetKind : std::uint8_t {
 using PowerGateIn = sc_core::sc_port_b<sc_core::sc_signal_in_if<bool>>;
 using InterruptOut = sc_core::sc_port_b<sc_core::sc_signal_inout_if<bool>>;
 
-/// Base of every block. A block states in its constructor what it consists of; whoever needs all
+/// Base of every block. A block states in its constructor what it consists of; code that needs all
 /// statistics or all registers walks the Platform instead of keeping a list.
 class Block {
  public:
@@ -81,7 +81,7 @@ class Block {
                 std::string(row.name) + " has more requests under way than its row allows");
     masters_.push_back({id, &socket, outstanding, pace.value_or(row.pace)});
   }
-  /// The functional clock, the gate of the power and sleep controller, and an interrupt line: whoever
+  /// The functional clock, the gate of the power and sleep controller, and an interrupt line: the code that
   /// places the block binds them. Interrupts keep the order of the calls.
   void add_clock(ClockIn& port) { clocks_.push_back(&port); }
   void add_power_gate(PowerGateIn& port) { power_gates_.push_back(&port); }

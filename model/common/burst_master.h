@@ -57,7 +57,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
     for (const Slot& s : slots_) t = std::min(t, s.free);
     return t;
   }
-  /// Before the first burst. Whoever shares the port with others needs kernel time: see bus/shared_port.h.
+  /// Before the first burst. A master that shares its port with others needs kernel time: see bus/shared_port.h.
   void set_report(Report report) { report_ = report; }
   bool can_issue() const { return free_from() <= kernel_time(); }
   /// Slots not free strictly before t, as far as is known.
@@ -165,7 +165,7 @@ class BurstMaster : public sc_core::sc_module, public MemInitiatorIf {
   void report(Slot& s) {
     // The slot may be taken again inside the call: hand out a copy of the data.
     auto data = s.bytes_;
-    if (s.error && !s.write) data.fill(0);  // nobody has answered
+    if (s.error && !s.write) data.fill(0);  // no slave has answered
     const Completion c{s.tag,    s.write, s.error, s.address, {data.data(), s.bytes},
                        s.issued, s.first, s.last};
     --busy_;

@@ -41,7 +41,7 @@ class BusTarget : public sc_core::sc_module, public Block {
     bank_.reset();
     on_reset(kind);
   }
-  /// Adds an observer of every access over the bus, which must outlive the subscription.
+  /// `observer` is called at every access over the bus. It must outlive the Subscription that is returned.
   Subscription observe(RegisterObserver& observer) { return observers_.add(&observer); }
 
  protected:

@@ -34,7 +34,7 @@ struct MemRequest {
   Picoseconds issued = 0;          ///< when the master puts it on its port
   Master master = Master::kArmD;
   bool write = false;
-  bool locked = false;             ///< nobody else reaches the slave before this master's next request
+  bool locked = false;             ///< no other master reaches the slave before this master's next request
   std::uint8_t bytes = 0;          ///< 1 .. kMaxBurstBytes
   /// Completing this request wakes no process and raises no interrupt, directly or through requests that
   /// follow from it. Initiators that run ahead need not stop at its completion. An interrupt at the end

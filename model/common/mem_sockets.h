@@ -12,7 +12,7 @@ enum class MemPhase : std::uint8_t {
   kRequest,   ///< forward: the request is on the port at MemRequest::issued
   kAccepted,  ///< backward, from a slave: accepted from its input register
   kResponse,  ///< backward: the outcome is decided; its times may lie ahead
-  kRefused,   ///< backward, from a slave: the same, and the outcome is that nobody answers
+  kRefused,   ///< backward, from a slave: the same, and the outcome is that nothing answers
 };
 
 struct MemProtocol {

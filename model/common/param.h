@@ -274,7 +274,7 @@ class ParamSet {
   }
   const std::vector<ParamBase*>& all() const { return all_; }
   ParamBase* find(std::string_view key) const;
-  /// Declares a key that belongs to another command. If somebody sets it here, or a similar key
+  /// Declares a key that belongs to another command. If a user sets it here, or a similar key
   /// that is unknown, the error message says so with `hint` ("is a key of ...").
   void add_foreign(std::string key, std::string hint) { foreign_.emplace(std::move(key), hint); }
   /// The known or foreign key that is nearest to `key` by edit distance; empty if none is similar.

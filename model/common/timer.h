@@ -49,8 +49,8 @@ class Horizon {
   }
   /// The next call asks the kernel: its time may have advanced since the last one.
   void forget() { seen_ = changes_ - 1; }
-  /// False if the kept value differs from the kernel's although no Timer was used since: somebody
-  /// notified an event directly. A build with FOVEA_PARANOID checks this at every use.
+  /// False if the kept value differs from the kernel's although no Timer was used since: an event was
+  /// notified directly. A build with FOVEA_PARANOID checks this at every use.
   bool holds() const { return seen_ != changes_ || at_ == kernel_horizon(); }
 
   /// Remembers a moment; moved() tells whether any Timer was set or cancelled after it.

@@ -4,7 +4,7 @@
  * The lines are pins 40 to 42 of GPIO bank 1. Their fields in PINMUX4 are neighbours, and 0, their reset value, makes
  * them GPIO (Linux mach-davinci/dm365.c, MUX_CFG). Nothing else of this board is on them: DIP switches have pins 0 to
  * 15, UART0 18 and 19, I2C 20 and 21, the memory interface 52 and up, phase marks 64 to 75. A resistor pulls each line
- * down, so that camera 0 is led through as long as nobody drives the pins. */
+ * down, so that camera 0 is led through as long as nothing drives the pins. */
 #ifndef FOVEA_CONTRACT_MULTIPLEXER_H
 #define FOVEA_CONTRACT_MULTIPLEXER_H
 

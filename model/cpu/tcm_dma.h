@@ -28,7 +28,7 @@ struct TcmStats : StatGroup {
 
 /// Executes one burst at a time, in order of arrival. Each burst begins and ends after all other
 /// activity of its instant, so the core's own accesses of that instant come first: ahead of the kernel as
-/// an event of the memory path, which nobody else acts at; at the kernel's present time by EndOfInstant.
+/// an event of the memory path, at which no other process acts; at the kernel's present time by EndOfInstant.
 /// While the core's clock is stopped, bursts wait.
 class TcmDma : public sc_core::sc_module, public Block, public MemTargetIf, private memsys::PassiveSlave {
  public:

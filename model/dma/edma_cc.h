@@ -97,7 +97,7 @@ class EdmaCc : public WithRegs<EdmaRegs>, public BusTarget, private ChannelContr
   void event(unsigned channel);
   /// From a transfer controller: its program register is free from `at` on.
   void program_free(Picoseconds at) {
-    if (core_.next_turn() != kNever) wake_.at(at);  // nobody else waits for it
+    if (core_.next_turn() != kNever) wake_.at(at);  // only queued requests wait for it
   }
   /// From a transfer controller: the request ends at `at`, now or later.
   void completed(const TransferRequest& request, Picoseconds at);

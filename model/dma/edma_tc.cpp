@@ -197,7 +197,7 @@ void EdmaTc::show(EdmaTcRegs::Set& r, std::function<RegisterSet()> set) {
   r.bidx.on_read([&r, set] { r.bidx.set(set().indices()); });
 }
 
-/// Bursts under way are still answered; nobody waits for them.
+/// Bursts under way are still answered, but the controller no longer waits for the answers.
 void EdmaTc::on_reset(ResetKind) {
   in_reset_ = true;
   core_.reset();
@@ -304,8 +304,8 @@ void EdmaTc::report_bus_error(const TransferRequest& request, bool read) {
   }
   ++stats.errors;
   set_error(regs.errstat.bus);
-  diagnostics().guest(read ? "EDMA: a read that nobody answers (bus error)"
-                           : "EDMA: a write that nobody answers (bus error)");
+  diagnostics().guest(read ? "EDMA: a read that no slave answers (bus error)"
+                           : "EDMA: a write that no slave answers (bus error)");
 }
 
 /// The interrupt is raised with the first enabled error.

@@ -98,7 +98,7 @@ void RemapEngine::clock_changed() {
   go_on();
 }
 
-/// Requests under way are still answered; nobody waits for them.
+/// Requests under way are still answered, but the engine no longer waits for the answers.
 void RemapEngine::on_reset(ResetKind) {
   ++resets_;
   waiting_.clear();

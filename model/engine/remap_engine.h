@@ -32,11 +32,11 @@ struct EngineStats : StatGroup {
   TimedCounter source_bytes{*this, "source_bytes", "B", "bytes of sources that were read"};
   TimedCounter writes{*this, "writes", "1", "bursts of results that were written"};
   TimedCounter write_bytes{*this, "write_bytes", "B", "bytes of results that were written"};
-  Counter errors{*this, "errors", "1", "requests that nobody answered"};
+  Counter errors{*this, "errors", "1", "requests that no slave answered"};
   EngineStats() : StatGroup("engine") {}
 };
 
-/// How far apart two compared backends were (`engine` = both, both_tlm): requests by clocks, whoever was earlier.
+/// How far apart two compared backends were (`engine` = both, both_tlm): requests by clocks, whichever was earlier.
 struct PairStats final : StatGroup {
   static constexpr std::array<unsigned, 6> kUpTo{0, 1, 3, 7, 15, 63};
   Counter requests{*this, "requests", "1", "requests that were compared, and equal"};
@@ -60,7 +60,7 @@ struct PairStats final : StatGroup {
 /// Behind it is a backend: a model or the RTL. Its requests are put on the port at their edges. A burst is handed to
 /// the bus when all its data have left the engine. Answers reach the RTL in kernel time, at their first beat; the model
 /// takes them within the memory path, as soon as they are decided, and so costs an event of the kernel only where
-/// somebody could see what it does, or where it has to know that an answer did not come.
+/// another process could see what it does, or where it has to know that an answer did not come.
 class RemapEngine : public WithRegs<EngineRegs>, public BusTarget, private EngineBackend::Host {
  public:
   using Params = EngineParams;

@@ -12,7 +12,7 @@
 namespace fovea::mem {
 namespace {
 
-/// Field by field: the two sides share no type.
+/// Copied field by field: the checker shares no types with the controller, so that one error cannot hide in both.
 check::DataSheet as_programmed(const DdrConfig& c) {
   check::DataSheet s;
   s.CL = c.timing.CL;

@@ -39,7 +39,7 @@ class DdrModule final : public WithRegs<DdrRegs>, public BusTarget, private mems
   /// What the registers say now.
   DdrConfig programmed() const;
 
-  /// Brings the whole memory system to `now`: for whoever looks at its state.
+  /// Brings the whole memory system to `now`, so that its state can be read.
   void settle(Picoseconds now) { memory_.settle(now); }
   void leave_reset() override { in_reset_ = false; }
 

@@ -120,7 +120,7 @@ inline Taken MemorySystem::arrive(MemRequest& r, Picoseconds at) {
   return controller_.submit_inside(r, offset, at) ? Taken::kYes : Taken::kWaits;
 }
 
-/// The SDRAM is closed, the request is not inside the part, or somebody observes.
+/// The SDRAM is closed or its input blocked, the request is not inside the part, or there is an observer of arrivals.
 [[gnu::noinline]] Taken MemorySystem::arrive_slowly(MemRequest& r, Picoseconds at) {
   const std::uint32_t offset = r.address - map_.ddr_base;
   const bool in_question = !open_ || std::uint64_t{offset} + r.bytes > store_.size();

@@ -56,7 +56,7 @@ class MemorySystem final : private SlowRequestTeller {
   }
   /// The one loop that takes events: all strictly before `limit`, in time order. It stops early, and
   /// returns true, after an event in which the host was called: its master may have more requests, or
-  /// somebody else may act sooner than the caller thought.
+  /// another process may act sooner than the caller thought.
   bool advance(Picoseconds limit);
   /// The same without stopping.
   void advance_through(Picoseconds limit) {
@@ -110,7 +110,7 @@ class MemorySystem final : private SlowRequestTeller {
   /// A debugger's access to the SDRAM, without time. @return bytes moved
   unsigned debug_access(const MemRequest& r);
 
-  /// Requests without an outcome yet whose outcome may make others act (not MemRequest::no_side_effects).
+  /// Number of requests under way whose completion can trigger another process (not MemRequest::no_side_effects).
   unsigned undecided() const { return undecided_; }
   /// Time of the event being taken, within a call of the host.
   Picoseconds event_time() const { return event_time_; }
@@ -184,7 +184,7 @@ class MemorySystem final : private SlowRequestTeller {
   bus::Crossbar crossbar_;
   mem::DdrController controller_;
   std::optional<Bypass> bypass_;
-  /// Reads that nobody answers, behind older reads of their master that are still to be served.
+  /// Reads that the SDRAM does not answer, behind older reads of their master that are still to be served.
   struct Refused {
     MemRequest* request;
     const MemRequest* behind;

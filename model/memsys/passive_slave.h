@@ -4,8 +4,8 @@
 
 namespace fovea::memsys {
 
-/// Its acts are taken by MemorySystem, in time order with its own: ahead of the host's time where nobody else acts
-/// before them. Nobody but the master of its request and a core that looks at every act may see them.
+/// Its acts are taken by MemorySystem, in time order with its own: ahead of the host's time where no other process
+/// acts before them. Only the master of its request and a core that looks at every act may see them.
 class PassiveSlave {
  public:
   virtual ~PassiveSlave() = default;

@@ -75,7 +75,7 @@ struct Dm365Params : ParamTree {
 /// Outside pins: osc, the decoder's video input, the display output, I2C, UART0, GPIO.
 class Dm365 : public sc_core::sc_module, public Block {
  public:
-  /// @param entry where the core starts: the ROM boot loader's work is done by whoever loads it
+  /// @param entry where the core starts: the code that loads the program does the ROM boot loader's work
   /// @param external the board's devices on the asynchronous memory interface
   Dm365(sc_core::sc_module_name name, const Dm365Params& params, std::uint32_t entry, bool strict,
         const Placements& external = {});
@@ -132,14 +132,14 @@ class Dm365 : public sc_core::sc_module, public Block {
   /// What has ended the core's sleep: the source of its most urgent interrupt.
   cpu::WakeEvent wake_event() const;
 
-  /// The watchdog asks for a reset of the chip, with the cause. Whoever sets this calls reset_chip(), or
-  /// ends the simulation at this instant.
+  /// The watchdog asks for a reset of the chip, with the cause. The function that is set here calls
+  /// reset_chip(), or ends the simulation at this instant.
   std::function<void(const std::string& cause)> on_reset_request;
   /// Resets all blocks at the end of the present instant. The core's first instruction follows after
   /// `system.reset_time`, or later if answers to requests from before the reset are still under way.
   void reset_chip(ResetKind kind);
-  /// Called just before the core starts again: whoever stands in for the ROM boot loader loads the
-  /// program.
+  /// Called just before the core starts again: the observer that stands in for the ROM boot loader loads
+  /// the program.
   using BootObserver = std::function<void(ResetKind kind)>;
   Subscription observe_boot(BootObserver observer) { return boot_observers_.add(std::move(observer)); }
   ChipStats stats;

@@ -71,7 +71,7 @@ class Crossbar {
   /// Who knows what passed at the SDRAM; outlives the crossbar. None: these steps are left out.
   void set_teller(const SlowRequestTeller& teller) { teller_ = &teller; }
   /// The grant of a request to the SDRAM whose port has not been called, if it comes before the
-  /// next one planned: its time is known at once. `at` is kNever if somebody else has a say.
+  /// next one planned: its time is known at once. `at` is kNever if another request or an observer has a say in it.
   struct UncontendedGrant {
     std::uint64_t crossed = 0, edge = 0;
     Picoseconds at = kNever;

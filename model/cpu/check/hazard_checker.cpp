@@ -23,8 +23,8 @@ std::uint64_t HazardChecker::total() const {
   return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
 }
 
-/// Calls f(line, held) for each valid line with this physical address. Nobody announces that a line
-/// becomes invalid, so the cache is asked.
+/// Calls f(line, held) for each valid line with this physical address. Observers are not told
+/// that a line becomes invalid, so the cache is asked.
 template <class F>
 void HazardChecker::each_holder(std::uint32_t line_pa, F f) {
   if (!holders_[bucket(line_pa)]) return;

@@ -51,7 +51,7 @@ void StaleCode::at_boundary() {
            it->second.at, core_.boundary_time(), it->second.filled});
 }
 
-/// Nobody announces that a line is replaced; without this the core would be watched for ever.
+/// Observers are not told that a line is replaced; without this the core would be watched for ever.
 void StaleCode::drop_replaced() {
   std::erase_if(changed_, [this](const auto& entry) { return !held(entry.first); });
   if (changed_.empty()) watching_ = {};

@@ -16,8 +16,8 @@ struct AccessRecord {
   bool write = false;
 };
 
-/// The fast handlers note only their record and the address; the rest is worked out when somebody
-/// asks, or when the record is about to change.
+/// The fast handlers note only their record and the address; the rest is worked out when the log
+/// is read, or when the record is about to change.
 class AccessLog {
  public:
   void note(const Instruction* record, std::uint32_t va) {

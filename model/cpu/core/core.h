@@ -210,7 +210,7 @@ class Core : public Background {
   Picoseconds tcm_burst_over() const { return interface_.time(ram_.port().end() - 1); }
   void tcm_burst_ends(bool write, std::uint8_t* data);
   const TcmPort& tcm_port() const { return ram_.port(); }
-  /// Tells `watch` of loads from internal RAM and of bursts to it from now on; null: nobody.
+  /// Tells `watch` of loads from internal RAM and of bursts to it from now on; null: no observer is told.
   void watch_ram(RamWatch* watch) {
     ram_watch_ = watch;
     forget_translations();
@@ -228,7 +228,7 @@ class Core : public Background {
   void watch_line(unsigned line, bool on) { data_.watch_line(line, on); }
 
   /// Forgets all that is remembered to save host time: translations, hints, decoded lines, times, and up to when
-  /// nobody else acts. It changes no result, which tests show by doing so at any time.
+  /// no other process acts. It changes no result, which tests show by doing so at any time.
   void forget_for_a_test();
 
   // For debuggers: only at an instruction boundary or during an SWI, without simulated time.

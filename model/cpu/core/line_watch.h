@@ -4,12 +4,12 @@
 namespace fovea::cpu {
 
 /// Lines are numbered as in Cache. Accesses that hit a hint are not announced, which is why a hit costs
-/// nothing: whoever wants to hear about every access to a line watches it (Core::watch_line), so that it
-/// has no hints. Loads are announced to all observers, whoever watches the line. An observer changes nothing else.
+/// nothing: an observer that needs every access to a line watches it (Core::watch_line), so that the line
+/// has no hints. Loads are announced to all observers, whichever watches the line. An observer changes nothing else.
 class LineWatch {
  public:
   virtual ~LineWatch() = default;
-  /// The line holds new contents, and everybody else has acted up to the core's time.
+  /// The line holds new contents, and all other processes have acted up to the core's time.
   virtual void filled(unsigned line) = 0;
   /// A load of `bytes` from byte `offset` of a watched line.
   virtual void loaded(unsigned line, unsigned offset, unsigned bytes) = 0;

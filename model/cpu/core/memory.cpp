@@ -64,7 +64,7 @@ Core::Result Core::load(std::uint32_t va, unsigned bytes, std::uint32_t& value, 
 }
 
 /// What the buffers do before this load comes first, so that an observer learns of things in the order of their times:
-/// as far as nobody else has to act for it, who would act after this instruction if nothing was observed.
+/// as far as no other process has to act for it, which would act after this instruction if nothing was observed.
 void Core::tell_load(std::uint32_t pa, unsigned bytes) {
   if (ledger_.cycle < interface_.stop_cycle && !interface_.attention) bus_.run_buffers(ledger_.cycle);
   ram_watch_->loaded({ram_.offset(pa), bytes, regs_.pc, ledger_.cycle, bus_.room_waits()});

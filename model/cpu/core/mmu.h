@@ -65,7 +65,7 @@ class Mmu {
   }
   /// Forgets the remembered translations; the TLB keeps its entries.
   void forget();
-  /// Number of entries put into the TLB so far. An older one may have been replaced, so whoever
+  /// Number of entries put into the TLB so far. An older one may have been replaced, so code that
   /// remembers something of a translation must forget it.
   std::uint64_t insertions() const { return insertions_; }
 

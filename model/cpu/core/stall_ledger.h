@@ -16,7 +16,7 @@ class StallLedger {
  public:
   std::uint64_t cycle = 0;  // number of the present clock
   Counts counts;
-  ClockProfile* profile = nullptr;  // hears of each stalled or idle clock; null: nobody does
+  ClockProfile* profile = nullptr;  // is told of each stalled or idle clock; null: there is no profile
   bool bus_waited = false;  // set when the core has waited for the bus; cleared by InternalRam
 
   /// Names for the addresses; to be set before the first instruction.

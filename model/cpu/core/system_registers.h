@@ -10,7 +10,7 @@ inline constexpr std::uint32_t kMmuOn = 1u << 0, kAlignmentChecked = 1u << 1, kD
                                kIcacheOn = 1u << 12, kHighVectors = 1u << 13,
                                kRoundRobin = 1u << 14, kArmV4Loads = 1u << 15;
 
-/// Plain values. Whoever changes one informs the parts that keep something derived from it
+/// Plain values. The code that changes one informs the parts that keep something derived from it
 /// (Core::cp15_write).
 struct SystemRegisters {
   static constexpr std::uint32_t kControlAtReset = 0x0005'0078;

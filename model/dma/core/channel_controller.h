@@ -1,5 +1,5 @@
 // The EDMA3 channel controller: events, queues, parameter RAM, completion, interrupts. Knows no
-// SystemC; whoever owns it says when it may act and carries its interrupts and requests away.
+// SystemC; its owner says when it may act, and carries its interrupts and requests away.
 // Behaviour: SPRUEE4A (DM35x) and SPRUH82C (AM1808), the guides of sister chips.
 #pragma once
 #include <array>

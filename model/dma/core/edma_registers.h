@@ -29,8 +29,8 @@ struct RegPair {
   }
 };
 
-/// The registers of channels and interrupts: once for everybody and once in each shadow region, where
-/// DRAE and QRAE hide what does not belong to the region.
+/// The registers of channels and interrupts: once in the global region and once in each shadow region,
+/// where DRAE and QRAE hide what does not belong to the region.
 struct ChannelRegs {
   RegPair er, ecr, esr, cer, eer, eecr, eesr, ser, secr, ier, iecr, iesr, ipr, icr;
   Reg ieval, qer, qeer, qeecr, qeesr, qser, qsecr;

@@ -204,7 +204,7 @@ void TransferController::read_done(std::span<const std::uint8_t> data, bool erro
   arrived_.add(static_cast<unsigned>(data.size()), at);
   const auto d = std::find_if(destinations_.begin(), destinations_.end(),
                               [](const Destination& x) { return x.to_arrive > 0; });
-  FOVEA_CHECK(d != destinations_.end() && d->to_arrive >= data.size(), "data that nobody asked for");
+  FOVEA_CHECK(d != destinations_.end() && d->to_arrive >= data.size(), "data that no request asked for");
   d->to_arrive -= static_cast<std::uint32_t>(data.size());
   if (error) host_.failed(d->request, Failure::kRead, at);
   advance();

@@ -32,8 +32,8 @@ class TransferController {
  public:
   enum class Failure : std::uint8_t {
     kNone,
-    kRead,     ///< nobody answered a read
-    kWrite,    ///< nobody answered a write
+    kRead,     ///< no slave answered a read
+    kWrite,    ///< no slave answered a write
     kRequest,  ///< constant addressing with an address or an index that is no multiple of 32
   };
 

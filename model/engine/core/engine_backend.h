@@ -35,7 +35,7 @@ struct JobPlace {
 struct Answer {
   std::uint64_t tag = 0;
   bool write = false;
-  bool error = false;  ///< nobody has answered; `data` are zeros
+  bool error = false;  ///< no slave has answered; `data` are zeros
   std::span<const std::uint8_t> data{};  ///< of a read; valid during the call
   Picoseconds first = 0, last = 0;       ///< beats at the port; of a write `last` is the acknowledgement
 };

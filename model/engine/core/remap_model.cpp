@@ -139,7 +139,7 @@ template <bool kNearest>
 }
 
 /// By far the most clocks of a job without interpolation, as long as they follow each other: each unit behind the cache
-/// hands its word on, and nobody outside is concerned. Each of them is the same as run_clock().
+/// hands its word on, and nothing is exchanged with the memory. Each of them is the same as run_clock().
 /// @param reads no read that is not known arrives before this clock
 void RemapModel::flow(std::uint64_t reads) {
   const std::uint64_t until = sending_ ? std::min(next_arrival_, packer_.sent_at()) : next_arrival_;

@@ -11,7 +11,7 @@ namespace fovea::engine {
 
 class TlmBackend : public EngineBackend, private RemapModel::Port {
  public:
-  /// @param clock the engine's; whoever changes its frequency calls run() before and after
+  /// @param clock the engine's; the code that changes its frequency calls run() before and after
   TlmBackend(const Clock& clock, Host& host, Geometry geometry = {})
       : clock_(clock), host_(host), model_(*this, geometry) {}
 

@@ -22,7 +22,7 @@ namespace fovea::rtl {
 ///   its strobes leave, in the order of addresses. It is answered when all of them are.
 /// - Back-pressure: ARREADY and AWREADY are low while requests wait for a slot of the memory port, and
 ///   AWREADY while kWrites bursts are unanswered.
-/// - Nobody answers an address: DECERR.
+/// - An access to an address that no slave answers gets DECERR.
 class AxiMemory {
  public:
   struct Burst {

@@ -15,8 +15,8 @@ inline unsigned write_words(std::uint32_t address, unsigned bytes) {
 
 /// Requests by age: position 0 is the oldest. Each has a slot that it keeps until it leaves.
 ///
-/// A request that comes while nothing else is queued is *single*. It mostly leaves before another one
-/// comes, so the sets and totals do not know it before join_single().
+/// A request that comes while nothing else is queued is *single*. It is kept outside the sets and totals until
+/// join_single(), which a second request causes; mostly the single one leaves before that.
 class CommandQueue {
  public:
   static constexpr unsigned kMost = QueuePositions::kMost;

@@ -139,8 +139,8 @@ void DdrController::step() { take_decision(); }
   plan();
 }
 
-/// A row that has been open for too long; whoever waits for this PRE waits for the upkeep of the part, as
-/// for refresh.
+/// Closes a row that has been open for too long. A wait for this PRE is charged to the upkeep of the SDRAM
+/// device, as a wait for refresh is.
 void DdrController::close_overdue_row(std::uint64_t clock) {
   const unsigned bank = plan_.choice.bank;
   device_.issue<Cmd::kPre>(bank, 0, clock);

@@ -1,5 +1,5 @@
-// TI's DDR2/mDDR controller (the family's scheduler) as a passive state machine: it is advanced to
-// a time by whoever is entitled to, and never runs ahead of what may still arrive.
+// TI's DDR2/mDDR controller (the family's scheduler) as a passive state machine: the caller advances
+// it to a time, which must not lie after that of a request that can still arrive.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -51,7 +51,7 @@ class DdrController {
 
   /// Catches up to `at` what needs no decision: refreshes and sleep while nothing is queued, and
   /// the columns inside a burst. They change nothing that a master can see before the next decision
-  /// or request; whoever reads the statistics calls this first.
+  /// or request. Must be called before the statistics are read.
   void catch_up(Picoseconds at);
 
   /// A request for the SDRAM, at byte `offset` in it, arrives at time `at`. The write data are copied
@@ -59,8 +59,8 @@ class DdrController {
   /// once. False: it waits in the input register, until the news() of a later step say that it was
   /// accepted; the caller sends no other one before.
   bool submit(MemRequest& request, std::uint32_t offset, Picoseconds at);
-  /// The same for a caller that knows that it may: the request inside the SDRAM, input_blocked() false. In
-  /// line, in ddr_plan.h.
+  /// Like submit(), without its checks. The request must lie inside the SDRAM, and input_blocked() must be
+  /// false. An inline function, in ddr_plan.h.
   bool submit_inside(MemRequest& request, std::uint32_t offset, Picoseconds at);
   /// The clock is stopped, or a request waits in the input register: no request may be submitted.
   bool input_blocked() const { return input_blocked_; }

@@ -1,5 +1,5 @@
-// What others see of the queue. Writes are acknowledged when they are taken into the FIFO, so for a
-// debugger their data are part of memory.
+// The queue as debuggers see it. Writes are acknowledged when they are taken into the FIFO, so debug
+// accesses see the data of queued writes as part of the memory.
 #include <algorithm>
 #include <cstring>
 

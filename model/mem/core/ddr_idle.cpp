@@ -1,4 +1,4 @@
-// What the controller does for the part: refresh, and low-power modes while nothing is queued.
+// Refresh of the SDRAM device, and its low-power modes while no request is queued.
 #include "model/mem/core/ddr_plan.h"
 #include "model/mem/core/partial_refresh.h"
 

@@ -74,7 +74,7 @@ struct DdrParams : ParamGroup {
                        Origin::kFamily, kSisters, {"7", "7", kSistersAgree}};
   EnumParam scheduler{*this, "scheduler", "ti", {"ti", "fcfs", "frfcfs", "closed_page"},
                       "ti: the chip's; fcfs: data strictly by age, rows opened ahead; frfcfs: what is "
-                      "ready first, so open rows, then age, of all; closed_page: ti, but a row nobody "
+                      "ready first, so open rows, then age, of all; closed_page: ti, but a row that no request "
                       "waits for is closed after its access",
                       Origin::kChoice, ""};
   EnumParam ti_open_row{*this, "ti_open_row", "activated", {"activated", "ready"},

@@ -1,6 +1,6 @@
-// What several files need in line: planning of the common cases, a count, and what every request and every
-// command goes through. The memory system includes it, so that a request is one piece of host code from the
-// crossbar's grant to its entry in the queue.
+// Inline functions on the path of every request and of every command: planning of the common cases, a count,
+// submission and the commands themselves. The memory system includes it, so that a request is one piece of host
+// code from the crossbar's grant to its entry in the queue.
 #pragma once
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-// How the outcomes of reads are found and in which order they are reported.
+// When the data of reads return to the crossbar, and in which order these outcomes are reported.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -32,7 +32,7 @@ class WaitAttribution {
     std::uint8_t cause = kRefreshed;
   };
   static constexpr std::size_t kHistory = 64;  // commands that are remembered
-  /// A read at its first column command, for whoever asks afterwards what it waited for.
+  /// A read at its first column command; tell() finds from this what the read waited for.
   struct Column {
     std::uint64_t ready = 0, clock = 0;  ///< edges: the scheduler saw it, the command
     std::uint64_t prepared = 0;          ///< as QueueEntry::prepared

@@ -9,7 +9,7 @@
 namespace fovea::video {
 
 /// Delivers the pictures of another source unchanged: while field k is sent, a second thread
-/// renders field k + `step`. That source must not be used by anybody else meanwhile. An error during
+/// renders field k + `step`. That source must not be used by other code meanwhile. An error during
 /// rendering is thrown by the call of field() for that picture.
 class AheadSource : public PictureSource {
  public:
