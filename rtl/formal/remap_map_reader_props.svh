@@ -20,7 +20,7 @@
         offer_constant: assert ($stable(ar_addr_o) && $stable(ar_len_o));
       end
       within_4k: assert (!ar_valid_o || ar_addr_o[5:0] == '0);
-      // Nobody waits for ever: with an empty buffer and beats left there is an offer in the next clock.
+      // This module does not wait for ever: with an empty buffer and beats left there is an offer in the next clock.
       if ($past(rst_ni && left != '0 && promised == '0 && !ar_valid_o && !stop_i && !clear_i && !start_i))
         progress_1: assert (ar_valid_o);
       if ($past(rst_ni && stop_i && !ar_valid_o)) stops: assert (!ar_valid_o);

@@ -25,6 +25,6 @@
       loading_until_all: assert (loading == (rows_there != rows_i));
       // What the reader may read is not written over.
       if (take && there_o) needed_stays: assert (rows_there[1:0] != cell_row[1:0] && rows_there[1:0] != next_row[1:0]);
-      // Nobody waits for ever: while rows are missing, they are asked for.
+      // This module does not wait for ever: while rows are missing, they are asked for.
       if (!there_o) no_deadlock: assert (map_ready_o);
     end

@@ -28,6 +28,6 @@
       if (sending) f_last: assert ({5'd0, last_beat} == {5'd0, aw_addr_o[5:3]} + aw_len_o);
       if ($past(rst_ni && stop_i && !sending)) stops: assert (!sending);
       if (take) same_line: assert (mask == '0 || line == dst_i[29:4]);
-      // Nobody waits for ever: what is full goes out in the next clock if the sender is free.
+      // This module does not wait for ever: what is full goes out in the next clock if the sender is free.
       if ($past(rst_ni && full && !sending && !stop_i && under_way < 3'd4 && !clear_i)) progress_1: assert (sending);
     end

@@ -218,7 +218,7 @@ TEST(AxiMemoryTest, AsManyWritesAsAllowedAreUnanswered) {
   EXPECT_TRUE(rig.seen.aw.ready);
 }
 
-TEST(AxiMemoryTest, WhatNobodyAnswersIsADecodeError) {
+TEST(AxiMemoryTest, ARequestThatNoSlaveAnswersIsADecodeError) {
   Rig rig;
   rig.ask(1, 0, 2);
   rig.answer(0, 1500, 1500, true);

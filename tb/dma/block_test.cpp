@@ -1,5 +1,5 @@
 // Channel controller and a transfer controller as blocks, on crossbar and SDRAM: what software sees at each
-// nanosecond does not depend on how early outcomes are reported, and a burst that nobody sees costs no
+// nanosecond does not depend on how early outcomes are reported, and a burst that no other process sees costs no
 // kernel event. Each run is a process of its own.
 #include <gtest/gtest.h>
 
@@ -459,7 +459,7 @@ TEST(EdmaBlockTest, ARequestThatWaitsForAControllerWithoutClockIsSaidToWait) {
   EXPECT_EQ(seen, "1:0 1:0 1:1 1:1 2:1 ");
 }
 
-// Whoever waits at the head of a more urgent queue, here for a transfer controller that is not there.
+// A request waits at the head of a more urgent queue, here for a transfer controller that is not there.
 TEST(EdmaBlockTest, AQueueThatWaitsDoesNotHoldBackTheOthers) {
   const auto end = [](bool other_waits) {
     return one_transfer([other_waits](Rig& r, std::string& out) {
@@ -471,7 +471,7 @@ TEST(EdmaBlockTest, AQueueThatWaitsDoesNotHoldBackTheOthers) {
   EXPECT_EQ(end(true), end(false));
 }
 
-// Events that nobody has enabled are lost without a word: timers have them all the time.
+// Events that no program has enabled are lost without a word: timers have them all the time.
 TEST(EdmaBlockTest, AnEnabledEventWithoutClockIsSaidToBeLost) {
   const std::string seen = one_transfer([](Rig& r, std::string& out) {
     const auto look = [&r, &out] {

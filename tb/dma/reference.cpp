@@ -43,7 +43,7 @@ Fields decode(const std::array<std::uint32_t, 8>& w) {
   return f;
 }
 
-constexpr int kAnybody = -1;  // the global region
+constexpr int kGlobalRegion = -1;
 
 }  // namespace
 
@@ -73,10 +73,10 @@ Interpreter::Interpreter() {
 }
 
 bool Interpreter::owns(int region, unsigned channel) const {
-  return region == kAnybody || region_[static_cast<unsigned>(region)][channel];
+  return region == kGlobalRegion || region_[static_cast<unsigned>(region)][channel];
 }
 bool Interpreter::owns_qdma(int region, unsigned channel) const {
-  return region == kAnybody || region_qdma_[static_cast<unsigned>(region)][channel];
+  return region == kGlobalRegion || region_qdma_[static_cast<unsigned>(region)][channel];
 }
 
 bool Interpreter::line(unsigned region) const {
@@ -269,7 +269,7 @@ void Interpreter::link(unsigned set) {
   const unsigned target = low(param_[set][5]);
   if (target == 0xFFFF || target % 0x4000 / 32 > 255) {  // out of range: undefined, here as FFFFh
     param_[set] = {0, 0, 0, 0, 0, 0xFFFF, 0, 0};
-    if (target != 0xFFFF) {  // whoever watches the set learns of the update
+    if (target != 0xFFFF) {  // an observer of the set learns of the update
       for (unsigned w = 0; w < 8; ++w) store(set, w, param_[set][w]);
     }
     return;
@@ -282,7 +282,7 @@ void Interpreter::write(std::uint32_t offset, std::uint32_t value) {
   if (offset >= 0x4000) return store((offset - 0x4000) / 32, offset / 4 % 8, value);
   if (offset >= 0x2000)
     return write_channels(static_cast<int>(offset - 0x2000) / 0x200, offset % 0x200, value);
-  if (offset >= 0x1000) return write_channels(kAnybody, offset - 0x1000, value);
+  if (offset >= 0x1000) return write_channels(kGlobalRegion, offset - 0x1000, value);
   const unsigned half = offset / 4 % 2 * 32;
   if (offset >= 0x200 && offset < 0x220) {
     QdmaChannel& q = qdma_[(offset - 0x200) / 4];
@@ -321,7 +321,7 @@ void Interpreter::write(std::uint32_t offset, std::uint32_t value) {
 
 void Interpreter::write_channels(int region, std::uint32_t offset, std::uint32_t value) {
   if (offset == 0x78) {  // IEVAL
-    if (region != kAnybody && bit(value, 0) && line(static_cast<unsigned>(region)))
+    if (region != kGlobalRegion && bit(value, 0) && line(static_cast<unsigned>(region)))
       ++region_pulses_[static_cast<unsigned>(region)];
     return;
   }
@@ -426,7 +426,7 @@ std::uint32_t Interpreter::read(std::uint32_t offset) const {
   if (offset >= 0x4000) return param_[(offset - 0x4000) / 32][offset / 4 % 8];
   if (offset >= 0x2000)
     return read_channels(static_cast<int>(offset - 0x2000) / 0x200, offset % 0x200);
-  if (offset >= 0x1000) return read_channels(kAnybody, offset - 0x1000);
+  if (offset >= 0x1000) return read_channels(kGlobalRegion, offset - 0x1000);
   std::uint32_t v = 0;
   if (offset == 0x300 || offset == 0x304)
     for (unsigned i = 0; i < 32; ++i) v += dma_[(offset - 0x300) * 8 + i].missed ? 1u << i : 0;

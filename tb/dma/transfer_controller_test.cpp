@@ -40,7 +40,7 @@ struct Memory : TransferController::Host {
   };
   std::vector<Failed> failures;
   Picoseconds read_port = 0, write_port = 0;
-  std::uint32_t bad_read = ~0u, bad_write = ~0u;  // addresses that nobody answers
+  std::uint32_t bad_read = ~0u, bad_write = ~0u;  // addresses that no slave answers
   std::multimap<Picoseconds, std::function<void()>> events;
   unsigned ahead = 0;  // ns: outcomes are reported so much before their times, at most 20
   TransferController tc;

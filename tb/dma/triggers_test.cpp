@@ -287,7 +287,7 @@ TEST_F(Queues, AThresholdIsThatOfItsQueue) {
   EXPECT_EQ(read(kQstat0) >> 24, 0u);
 }
 
-TEST_F(Queues, WhoeverEnablesEventsIsHeard) {
+TEST_F(Queues, EventsThatARegionEnablesAreReported) {
   put(kEesr, 1u << 7);
   put(kEesr + 4, 1u << 2);
   EXPECT_EQ(enabled, 1ull << 7 | 1ull << 34);

@@ -21,7 +21,7 @@ std::uint64_t sum(const Tables& tables, std::size_t m, Waits MasterWaits::*direc
   return t;
 }
 
-/// No time was taken away from anybody: an unsigned sum would have wrapped.
+/// No master's time became less: an unsigned sum would have wrapped.
 void expect_grown(const WaitTable& was, const WaitTable& is) {
   for (std::size_t m = 0; m < kMasterCount; ++m)
     for (std::size_t c = 0; c < kCulprits; ++c) {

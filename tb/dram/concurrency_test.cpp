@@ -1,5 +1,5 @@
 // Writers and readers of the same bytes at once: no read is torn between two writes of a block, a
-// reader never sees a block go back, and what a writer has read back everybody sees.
+// reader never sees a block go back, and what a writer has read back every master sees.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -134,7 +134,7 @@ struct Reader : cpu::test::MachineWith<PathPort> {
   }
 };
 
-TEST(CoreStallsTest, ALoneCoreWaitsForNobodyElse) {
+TEST(CoreStallsTest, ALoneCoreWaitsForNoOtherMaster) {
   Reader r(32);
   EXPECT_GT(r.dcache(), 0u);
   for (std::size_t m = 0; m < kMasterCount; ++m)

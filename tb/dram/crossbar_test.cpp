@@ -164,7 +164,7 @@ TEST(CrossbarTest, WinnersOfTwoSlavesAtOneEdgeAreGrantedByPriority) {
   EXPECT_EQ(order(1, 4), "AB");
   EXPECT_EQ(order(2, 3), "AB");
   EXPECT_EQ(order(3, 2), "BA");
-  EXPECT_EQ(order(3, 3), "AB") << "the lower number after the last winner, who is nobody";
+  EXPECT_EQ(order(3, 3), "AB") << "the lower number, as there is no last winner";
 }
 
 TEST(CrossbarTest, PriorityChangeActsOnTheNextArbitrationInEitherOrder) {

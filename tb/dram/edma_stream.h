@@ -50,7 +50,7 @@ class EdmaStream {
         now_ = std::max(now_, memory_.next());
         memory_.step();
       } else {
-        throw std::runtime_error("nobody is served");
+        throw std::runtime_error("no request is served");
       }
       settle();
     }

@@ -278,7 +278,7 @@ TEST_F(ModuleTest, AddressesRepeatAtThePartsSizeUpToTheEndOfTheWindow) {
   EXPECT_EQ(b.master.socket->transport_dbg(r), 0u);
 }
 
-// For whoever waits for it, as a synthetic load does: timing programmed and locked, power and clock on.
+// For a master that waits for it, as a synthetic load does: timing programmed and locked, power and clock on.
 TEST_F(ModuleTest, SdramIsInitialisedWhenItsTimingIsLockedAndPowerAndClockAreOn) {
   auto& r = b.ddr.regs;
   const auto initialised = [&] {

@@ -36,7 +36,7 @@ struct ObservationTest : testing::Test {
   std::deque<PathRequest> requests;
   std::array<std::uint8_t, 64> data{};
   Picoseconds now = 0;
-  /// A read and a write to the SDRAM and a read of a register, which nobody answers.
+  /// A read and a write to the SDRAM and a read of a register, which no slave answers.
   void traffic() {
     for (unsigned k = 0; k < 3; ++k) {
       PathRequest& r = requests.emplace_back();
@@ -78,7 +78,7 @@ TEST_F(ObservationTest, TwoSeeTheSameArrivalsAndTheEndOfOneLeavesTheOther) {
   traffic();
   EXPECT_EQ(a.arrivals, before);
   EXPECT_GT(b.arrivals.size(), before.size());
-  // While anybody observes, a request counts as one with side effects.
+  // While an observer is subscribed, a request counts as one with side effects.
   const auto undecided = [&] {
     PathRequest& r = requests.emplace_back();
     r.bytes = 32;

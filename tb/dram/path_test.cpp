@@ -170,7 +170,7 @@ TEST_F(WaitsTest, QueuedClocksAndBanksOfLoneReads) {
   EXPECT_EQ(bank[3].row_misses, 1u);
 }
 
-TEST_F(WaitsTest, SleepIsCountedUpToWhereSomebodyLooks) {
+TEST_F(WaitsTest, SleepIsCountedUpToTheTimeOfTheReading) {
   mem::DdrConfig c;
   c.refresh_interval = 0;
   c.low_power = mem::LowPower::kPowerDown;

@@ -426,7 +426,7 @@ ReferenceController::Plan ReferenceController::plan_at(std::uint64_t edge) const
 
   if (const auto overdue = overdue_at(edge)) return *overdue;
 
-  // The first gets what it wants; the others may prepare a bank that nobody before them needs.
+  // The first gets what it wants; the others may prepare a bank that no request before them needs.
   std::optional<Plan> best;
   std::vector<unsigned> taken;
   for (const std::size_t i : list) {
@@ -488,7 +488,7 @@ void ReferenceController::leave(std::size_t place, std::uint64_t clock) {
     accepted.push_back({input_->id, ddr_.edge(clock), leaving});
     input_.reset();
   }
-  // Until the first of the queue arrives there is nobody.
+  // Until the first of the queue arrives there is no request.
   if (queue_.empty()) return;
   const std::uint64_t arrival = queue_.front().ready - limits_.request_latency;
   if (arrival <= clock + 1) return;

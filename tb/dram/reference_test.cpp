@@ -100,7 +100,7 @@ class Production {
             s.power_down_clocks.count(), s.self_refresh_clocks.count(),
             s.clock_stop_clocks.count()};
   }
-  /// A byte that nobody writes lost its value, 0, since this was asked last.
+  /// A byte that no request writes lost its value, 0, since this was asked last.
   bool lost(std::uint32_t address) { return std::exchange(*store_.at(address), 0) != 0; }
   /// A read has its data, but no outcome yet.
   bool holds() const {
@@ -287,7 +287,7 @@ std::vector<Event> play(std::uint64_t seed, unsigned requests, const Plant& plan
     if constexpr (requires { c.holds(); })
       held_seen += used.limits.order == ReferenceLimits::Order::kFrFcfs && c.holds();
     if (c.commands.size() > 20u * requests)
-      throw std::runtime_error("seed " + std::to_string(seed) + ": nobody is served");
+      throw std::runtime_error("seed " + std::to_string(seed) + ": no request is served");
   };
   std::size_t waiting = 0;
   bool waits = false;
@@ -528,7 +528,7 @@ std::vector<Event> doze(std::uint64_t seed, const Plant& plant = {}) {
   setup.limits.retention = 20 * kPsPerUs;
   if (plant) plant(setup);
   Controller c(setup);
-  // Where nobody writes: with the addresses at the edges of what is kept.
+  // Bytes that no request writes, among them the addresses at the edges of what is kept.
   std::vector<std::uint32_t> cells;
   for (unsigned i = 1; i < 64; ++i)
     cells.insert(cells.end(), {i << 20, (i << 20) - 1, static_cast<std::uint32_t>(below(64u << 20))});

@@ -119,7 +119,7 @@ TEST(RowTimeTest, NoRowIsOpenForLongerThanProgrammed) {
   }
 }
 
-// A controller that nobody listens to passes over the refreshes of a long idle time: what follows, and
+// A controller without an observer of its commands passes over the refreshes of a long idle time: what follows, and
 // all that is counted, is the same.
 TEST(IdleTimeTest, LongTimesOfRefreshesEndTheSame) {
   const auto run = [](bool listened, std::uint64_t seed) {

@@ -127,7 +127,7 @@ TEST(SchedulerTest, ReadPassesOlderWriteOutsideTwoKiBOnly) {
       << "neighbours across the boundary";
 }
 
-// To one address too: the reader gets the old bytes although the writer has its acknowledgement. Whoever listens to
+// To one address too: the reader gets the old bytes although the writer has its acknowledgement. A listener to
 // commands learns in which order the data moved.
 TEST(SchedulerTest, AReadPassesAnotherMastersWriteToTheSameAddress) {
   DdrBench b(options());

@@ -143,7 +143,7 @@ TEST(LoadedWaitsTest, CrossbarTagsEachEdgeWithWhoHadTheDataBus) {
 class Banks {
  public:
   static constexpr Picoseconds kClock = 4'000;
-  /// `looks`: in between somebody looks at the statistics, as a debugger or the kernel's turn does.
+  /// `looks`: the statistics are read in between, as by a debugger or at the kernel's turn.
   explicit Banks(std::uint64_t seed, bool looks = false)
       : rng_(seed), look_(seed + 1), looks_(looks), store_(params_.size_bytes()), ddr_(params_, store_, {}) {
     ddr_.set_clocks(Frequency(250'000'000), Frequency(125'000'000), 0);
@@ -275,7 +275,7 @@ TEST(LoadedWaitsTest, ControllerTagsEachClockWithTheCommandBefore) {
   EXPECT_GT(turned, 0u);
 }
 
-// A read that nobody else is beside: from the commands that are seen, whenever it comes.
+// A read without other requests beside it: from the commands that are seen, whenever it comes.
 TEST(LoneWaitsTest, ARefreshUnderWayIsWhatItWaitsFor) {
   constexpr Master kReader = Master::kVpbe;
   BenchOptions o;
@@ -393,7 +393,7 @@ TEST(LoadedWaitsTest, PartsOfEachReadAddUpWithAnyScheduler) {
 }
 
 // The data of a write burst are one piece: no turnaround lies between its columns, whether or not
-// somebody looked at them one by one.
+// the statistics were read between them.
 TEST(LoadedWaitsTest, LookingInBetweenMovesNoWait) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Banks alone(seed), watched(seed, true);

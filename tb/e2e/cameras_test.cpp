@@ -193,8 +193,8 @@ TEST(MultiplexerTest, WithAStuckSelectLineTheWrongCamerasAreShownUntilItIsOver) 
   EXPECT_EQ(rig.said(), std::vector<std::string>{});
 }
 
-// When the line breaks while camera 2 is captured, the second field of that frame is of camera 0. Without a lock that
-// is lost nobody sees it: the frame of two cameras is shown. With one it is left out.
+// When the line breaks while camera 2 is captured, the second field of that frame is of camera 0. If the decoder loses
+// no lock, the firmware does not see it: the frame of two cameras is shown. Otherwise the frame is left out.
 class StickingTest : public testing::TestWithParam<unsigned> {};
 TEST_P(StickingTest, InTheMidstOfAFrameIsSeenByTheLockAlone) {
   CamerasRig rig;

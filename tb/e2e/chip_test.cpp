@@ -198,7 +198,7 @@ TEST_F(WatchdogTest, WithTimer2WdtOffItIsATimerLikeTheOthers) {
   Chip::write(c.soc.system.regs, 0x38, 0x13);
   c.rig.advance(3 * kPsPerMs);
   ASSERT_TRUE(board.chip_reset().has_value());
-  // The pause ends only the time that was asked for; whoever goes on may.
+  // The pause ends only the time that was asked for; the caller may go on.
   const Picoseconds at = board.chip_reset()->at;
   EXPECT_EQ(kernel_time(), at);
   c.rig.advance(5 * kPsPerMs);

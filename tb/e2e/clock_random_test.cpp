@@ -95,7 +95,7 @@ std::vector<Shown> run(const cpu::test::Program& program, bool strict, Picosecon
   return out;
 }
 
-TEST(ClockRandomTest, NobodyWhoLooksChangesTheTime) {
+TEST(ClockRandomTest, NoObserverChangesTheTime) {
   const char* given = std::getenv("FOVEA_SEED");
   const std::uint64_t first = given ? std::strtoull(given, nullptr, 0) : 1;
   unsigned shown = 0;

@@ -30,7 +30,7 @@ expect() {
   done
 }
 
-# Whoever reads has seen enough (`| head`): no failure, no signal, no word.
+# The reader of the pipe has seen enough (`| head`): no failure, no signal, no word.
 for command in params version man --help 'completion bash'; do
   # shellcheck disable=SC2086 # words
   { sleep 0.1; "$fovea" $command 2>"$out/closed.txt"; echo $? >"$out/closed.status"; } | true

@@ -39,7 +39,7 @@ def table(file):
 
 
 def sentences(file):
-    """What the answer says of traffic that somebody may want to run beside it, without its sources."""
+    """What the answer says of traffic that a user may want to run beside it, without its sources."""
     with open(file) as f:
         found = [re.sub(r" \[.*\]$", "", line.strip()) for line in f if " needs " in line]
     if len(found) != 2:

@@ -569,7 +569,7 @@ TEST(RunTest, LoadWithTheDefaultStartWaitsForTheSdram) {
   for (const auto& [what, n] : diagnostics.counts()) {
     EXPECT_EQ(what.second.find("before its controller runs"), std::string::npos) << what.second;
     EXPECT_EQ(what.second.find("SDBCR CL: 4"), std::string::npos)
-        << "the loader's passing CL is nobody's to see: " << what.second;
+        << "the loader's passing CL is not reported: " << what.second;
   }
 }
 

@@ -310,7 +310,7 @@ struct SecondField {
 };
 void PrintTo(const SecondField& f, std::ostream* out) { *out << f.name; }
 class SecondFieldTest : public testing::TestWithParam<SecondField> {};
-TEST_P(SecondFieldTest, AFrameWhoseLastFieldLacksLinesIsNotShownAndNobodyElseIsToBlame) {
+TEST_P(SecondFieldTest, AFrameWhoseLastFieldLacksLinesIsNotShownAndNoOtherCameraIsToBlame) {
   const SecondField& p = GetParam();
   CamerasRig rig;
   small(rig, p.cameras);

@@ -66,7 +66,7 @@ constexpr unsigned kBack = 1000 + 2 * kRound + kTwoFrames;
 const char* const kIrregular = "irregular syncs, frames are left out";
 
 class ViewFaultTest : public testing::TestWithParam<ViewFault> {};
-TEST_P(ViewFaultTest, IsFoundInTimeSaidOnceAndNobodyElseIsToBlame) {
+TEST_P(ViewFaultTest, IsFoundInTimeSaidOnceAndNoOtherCameraIsToBlame) {
   const ViewFault& fault = GetParam();
   ViewsRig rig;
   four_way(rig);

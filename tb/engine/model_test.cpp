@@ -406,7 +406,7 @@ TEST_F(Queue, AbortEndsTheJobAndDropsTheOthers) {
   EXPECT_THAT(ended(), testing::ElementsAre(9, kDone, 2));
 }
 
-/// Whoever says less than a mode reads waits for ever, as in the RTL.
+/// A job with fewer words of map than its mode reads waits for ever, as in the RTL.
 TEST_F(Queue, AJobWithoutItsMapStandsStillUntilItIsAborted) {
   bench.set(bench.regs.map_words, 798);
   bench.set(bench.regs.ctrl, 1);

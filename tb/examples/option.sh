@@ -26,7 +26,7 @@ master=$(awk -F, '$2 == "write" {print $1; exit}' plain/slowest.csv)
 grep -q "^$master wrote the line at 0x.* times" run.txt || fail "the run does not name $master: $(<run.txt)"
 cmp plain/stats.json run/stats.json || fail "the option changes the figures"
 "$with" replay run.trace --writers "$address" -o replayed >replay.txt 2>&1 || fail "no replay: $(<replay.txt)"
-grep -q "wrote the line at 0x" replay.txt || fail "the replay names nobody: $(<replay.txt)"
+grep -q "wrote the line at 0x" replay.txt || fail "the replay names no master: $(<replay.txt)"
 
 "$with" exec /bin/true --fast-memory --writers 0 2>message
 [ $? = 2 ] || fail "a machine without SDRAM takes the option"

@@ -86,7 +86,7 @@ for memory in '' --fast-memory; do
   grep -q '"complete": false' "$out/loop/stats.json" || failures=$((failures + 1))
 done
 
-# Output that nobody takes: the program is told and ends, and so is the user.
+# Output that no reader takes: the program gets an error and ends, and the user gets a message.
 for memory in '' --fast-memory; do
   timeout 60 "$fovea" exec $memory "$fails" talk >/dev/full 2>"$out/full.txt"
   got=$?

@@ -1,4 +1,4 @@
-// Every reader of a file or stream that somebody else may have made, behind one kind of function.
+// Every reader of a file or stream that another program may have made, behind one kind of function.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -75,7 +75,7 @@ continue
 monitor where
 delete
 monitor watch dma $frames_out,0x200000 r vpbe
-monitor watch dma $frames_out,0x200000 r nobody
+monitor watch dma $frames_out,0x200000 r no_master
 monitor watch
 continue
 monitor where

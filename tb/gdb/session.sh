@@ -110,7 +110,7 @@ end 35 'Start address 0x' '"?\.text"?,.*: matched' 'pair.first$' 'New value = 11
 grep -q 'MIS-MATCHED' several.gdb && fail "several: load: $(cat several.gdb)"
 grep -q 'ttbr' several.gdb && fail "several: more than one group: $(cat several.gdb)"
 
-# A program that fails stops at the instruction that does, for whoever is there.
+# A program that fails stops at the instruction that does, for the debugger.
 for memory in '' --fast-memory; do
   begin "fails$memory" exec $memory "$program" load
   debug "$program" <<'G'
@@ -192,7 +192,7 @@ end 3
 grep -q 'stopped by the debugger' kill.err || fail "kill: $(cat kill.err)"
 grep -q '"complete": false' kill/stats.json || fail 'kill: the run is called complete'
 
-# Nobody attaches: Ctrl-C still ends it. The port is for this host, and one debugger.
+# No debugger attaches: Ctrl-C still ends it. The port is for this host, and one debugger.
 begin alone exec "$program"
 kill -INT $pid
 : >alone.gdb

@@ -207,7 +207,7 @@ TEST(CaptureTest, AnOpenFrameWaitsForItsJudgementWhileTheNextOneIsFilled) {
   capture_init(&c, 4);
   open_frame_t open{CAPTURE_NONE, 0};
   EXPECT_EQ(open_frame_begin(&open, &c), 1);
-  EXPECT_EQ(c.ready, CAPTURE_NONE) << "nobody takes it yet";
+  EXPECT_EQ(c.ready, CAPTURE_NONE) << "it is not there to be taken yet";
   open_frame_good(&open, &c);
   EXPECT_EQ(c.ready, 0);
   EXPECT_EQ(c.ready_sequence, 0u);

@@ -288,7 +288,7 @@ TEST(WatchdogTest, OnlyItsOwnResetIsSaidToBeItsOwn) {
 
 TEST(UartTest, DivisorFormatAndText) {
   RegisterRecorder chip;
-  chip.values[0x01C20004] = 0xF;     // interrupts of whoever used it before
+  chip.values[0x01C20004] = 0xF;     // interrupts of a program that used it before
   chip.values[0x01C20010] = 0x10;    // its loopback
   uart_init(UART_DIVISOR_115200);
   EXPECT_EQ(chip.values[0x01C20004], 0u);

@@ -292,7 +292,7 @@ TEST_F(Edma, AllCodesAreWaitedForAsleepAndACodeThatComesBetweenCheckAndSleepIsNo
   asleep = [&] { pending |= ++sleeps == 1 ? 1u << 12 : sleeps == 2 ? 1u << 3 | 1u << 5 : 1u << 30; };
   edma_wait_all(kCodes);
   EXPECT_EQ(sleeps, 3u);
-  EXPECT_EQ(pending, 1u << 5) << "that of nobody here is left";
+  EXPECT_EQ(pending, 1u << 5) << "a code that is not waited for is left";
   EXPECT_EQ(masked, 0);
   EXPECT_TRUE(ready());
 }

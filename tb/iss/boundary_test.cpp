@@ -35,7 +35,7 @@ const std::string kClients =
 
 TEST_F(BoundaryTest, InternalRamHasPermissions) {
   internal_ram_by_pages();
-  page(kCoarse, 0x12000, 0x12000, 0);  // nobody
+  page(kCoarse, 0x12000, 0x12000, 0);  // no access
   page(kCoarse, 0x14000, 0x14000, 1);  // not the user
   page(kCoarse, 0x15000, 0x15000, 2);  // the user reads
   m.port.set_word(kCoarse + 4 * 0x16, 0);
@@ -287,7 +287,7 @@ TEST(EntryTest, HandlersOfAllExceptionsAreFetchedOnce) {
                                       Kind{"ldr r0, [r9]", 0x10}}) {
     Machine m;
     m.section(0, kPa, 0, 0);
-    m.section(0x0700'0000, 0, 0, 0, 0);  // nobody may
+    m.section(0x0700'0000, 0, 0, 0, 0);  // no access
     m.load(assemble(".space " + std::to_string(vector) +
                         "\n add r10, r10, #1\n add r10, r10, #1\n svc #2\n",
                     kPa));

@@ -91,15 +91,15 @@ TEST(CoreDebugTest, TranslatesByTlbAndByTables) {
   m.section(0x5000'0000, kMemory, 0, 0);
   m.port.set_word(kData, 0x1234);
   m.on_svc = [&](std::uint32_t) {
-    EXPECT_EQ(m.get(0x4000'1000), 0x1234u);  // the program was there
-    EXPECT_EQ(m.get(0x5000'1000), 0x1234u);  // nobody was
+    EXPECT_EQ(m.get(0x4000'1000), 0x1234u);  // the program has accessed this page
+    EXPECT_EQ(m.get(0x5000'1000), 0x1234u);  // and not this one
     EXPECT_EQ(m.debug.physical(0x5000'1004), kData + 4);
     m.section(0x6000'0000, 0, 0, 0);
     m.port.set_word(kTables + 4 * 0x600, 0);
     EXPECT_FALSE(m.debug.physical(0x6000'0000));
     std::array<std::uint8_t, 1> b;
     EXPECT_FALSE(m.debug.read(0x6000'0000, b));
-    EXPECT_FALSE(m.debug.write(0x7000'0000, b));  // mapped, but nobody answers
+    EXPECT_FALSE(m.debug.write(0x7000'0000, b));  // mapped, but no slave answers
   };
   m.execute(std::string(kCachesOn) + " ldr r1, =0x40001000\n ldr r2, [r1]\n svc #3\n");
 }
@@ -547,7 +547,7 @@ TEST(CoreControlTest, WhatWasNotTouchedInTheEndIsNotTold) {
   moved.execute(kTwoAtOnce);
   EXPECT_EQ(moved.seen.size(), 1u);
 
-  SteppingMachine deleted;  // nobody watches it any more
+  SteppingMachine deleted;  // the debugger does not watch it any more
   deleted.watch(0x1000, 4, CoreControl::Watch::kWrite);
   deleted.watch(0x1004, 4, CoreControl::Watch::kWrite);
   deleted.at_watch = [&] {

@@ -39,7 +39,7 @@ class LatencyTest : public testing::Test {
     return m;
   }
   /// The first megabyte has pages, of domain 1: those of internal RAM, and one behind its data
-  /// window that leads to memory and that nobody may read.
+  /// window that leads to memory and that no mode may read where domain 1 is a client.
   static void prepare(Machine& m) {
     constexpr std::uint32_t kCoarse = kTables + 0x8000;
     m.port.set_word(kTables, kCoarse | 1u << 5 | 0x11u);
@@ -50,7 +50,7 @@ class LatencyTest : public testing::Test {
 };
 
 /// Registers r0 to pc from 0x17fc4 on: fifteen words lie in the data window of the internal RAM,
-/// the last behind it, which nobody may read once domain 1 is a client. Both pages are in the TLB.
+/// the last behind it, which no mode may read once domain 1 is a client. Both pages are in the TLB.
 const std::string kAbortingLdm =
     kTable + "interrupt: data: svc #1\n svc #2\nstart:" + kCachesOn + R"(
   ldr r1, =0x18000

@@ -165,7 +165,7 @@ TEST(StallTest, CulpritsAreThoseOfTheTransaction) {
   m.execute(kStart + "svc #3\n ldr r0, [r4]\n" + kWait + "svc #3");
   EXPECT_EQ(m.clocks(Cause::kDcache, "a", index(Culprit::kBridge)), 4u);
   EXPECT_EQ(m.clocks(Cause::kDcache, "a", index(culprit(Master::kVpbe))), 6u);
-  EXPECT_EQ(m.clocks(Cause::kDcache, "a", kService), 10u) << "what nobody explains";
+  EXPECT_EQ(m.clocks(Cause::kDcache, "a", kService), 10u) << "clocks that no part of the transaction explains";
   EXPECT_EQ(m.clocks(Cause::kDcache, "a", kCore), 1u);
   Counting<TellingPort> w;
   w.execute(kStart +

@@ -116,8 +116,8 @@ TEST_F(GpioTest, InputsReadTheBoardAndSwitchesHoldFromTheStart) {
   s.gpio.set_pin(40, false);
 }
 
-// For who stands beside the chip: the level on the wire, whoever drives it.
-TEST_F(GpioTest, APinHasTheLevelOfWhoDrivesIt) {
+// What the parts beside the chip see: the level on the wire, whether the chip or the board drives it.
+TEST_F(GpioTest, APinHasTheLevelOfWhatDrivesIt) {
   s.gpio.set_pin(40, true);
   for (const unsigned pin : {8u, 39u, 41u, 72u}) EXPECT_FALSE(s.gpio.pin(pin)) << pin;
   EXPECT_TRUE(s.gpio.pin(40));

@@ -274,7 +274,7 @@ TEST_F(I2cTest, EmptyDataRegisterStretchesTheClock) {
   ASSERT_TRUE(poll(kScd));
 }
 
-TEST_F(I2cTest, NobodyThereGivesNackAndStpFreesTheBus) {
+TEST_F(I2cTest, AnAddressWithoutDeviceGivesNackAndStpFreesTheBus) {
   bus.write(kSar, 0x33);
   write_bytes({0x00}, kStp);
   ASSERT_TRUE(poll(kNack));

@@ -46,7 +46,7 @@ TEST_F(BlameTest, AnExtraLoadIsBlamedOnItsLineThoughTheClocksAreTheSame) {
 
 // remap executes nothing else and waits 40 clocks more for what irq, with 12 of its own, does to it. With
 // less than a quarter of the change irq would be a by-product.
-TEST_F(BlameTest, WhoeverExecutesMoreIsTheOriginOfWaits) {
+TEST_F(BlameTest, TheFunctionThatExecutesMoreIsTheOriginOfWaits) {
   replace(after.profile, "dcache,lut,vpbe,50", "dcache,lut,vpbe,86");
   replace(after.profile, "irq.c,7,issue,,,50,50", "irq.c,7,issue,,,62,62");
   replace(after.profile, "idle.capture,,,300", "idle.capture,,,252");
@@ -328,7 +328,7 @@ TEST_F(BlameTest, RowsThatAreNotShownAreAddedUp) {
 
 // What becomes faster by other addresses is layout too.
 // With other settings only fetches of moved code that executes the same are layout, and half of a change is its reason.
-// As WhoeverExecutesMoreIsTheOriginOfWaits, with a function that was not there: 12 of 48 clocks.
+// As TheFunctionThatExecutesMoreIsTheOriginOfWaits, with a function that was not there: 12 of 48 clocks.
 TEST_F(BlameTest, ANewFunctionIsTheOriginOfWaits) {
   replace(after.profile, "dcache,lut,vpbe,50", "dcache,lut,vpbe,86");
   after.profile += "frames,poll,poll.c,3,issue,,,12,12\n";

@@ -61,7 +61,7 @@ TEST_F(CompareTest, TheLargestShareOfTheTimeStandsFirst) {
   EXPECT_THAT(out.str(), AllOf(HasSubstr("of a frame\n"), HasSubstr("+20.0 %\n"), HasSubstr("+4.0 %\n")));
 }
 
-// No figure of Fovea's is so, but a folder of results is a file of somebody.
+// No figure of Fovea's is so, but a folder of results may be of another program.
 TEST_F(CompareTest, WholeFiguresBelowZeroAndBeyondSixtyFourBitsStayWhatTheyAre) {
   set("a.small", "-5", "-9223372036854775808", "1");
   set("b.large", "18446744073709551615", "1e300", "1");

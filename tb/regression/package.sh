@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From the Debian package to a verdict on a firmware of somebody else's: the recipe of scripts/ci-example with
+# From the Debian package to a verdict on another project's firmware: the recipe of scripts/ci-example with
 # the unpacked package alone. Usage: package.sh BUILD SOURCE OUT
 set -uo pipefail
 build=$1 source=$2 out=$3

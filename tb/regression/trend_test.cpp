@@ -73,7 +73,7 @@ TEST_F(TrendCommandTest, ALineOfAnotherProgramIsNotReplaced) {
   ASSERT_EQ(add(c, {"--replace"}), 0) << err.str();
   EXPECT_EQ(TrendFile(db).lines("").at(0).program, "22");
   ASSERT_EQ(cli({"trend", a, "--database", db, "--commit", "two"}), 0);
-  // Of a program whose hash is not known nobody can say that it is the same.
+  // A program whose hash is not known cannot be said to be the same.
   slow.elf = "";
   const std::string unknown = slow.write(dir, "unknown").string();
   EXPECT_EQ(add(unknown), 2);

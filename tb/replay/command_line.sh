@@ -132,7 +132,7 @@ cmp "$out/by_clock.json" "$out/replay/stats.json" || fail 'clocks.preset=297/270
 expect deviates 0 'fovea: warning: bus.clock is 121.5 MHz' -- replay "$trace" -s ddr.clock=270MHz -s bus.clock=121.5MHz
 cmp -s "$out/by_clock.json" "$out/replay/stats.json" && fail 'bus.clock by hand changes nothing'
 grep -q '"ddr.tRP": {.*"origin": ".*small.trace"' "$out/replay/config.json" || fail 'config.json: origin'
-# A key that cannot act is warned of; what the trace sets is not, as nobody chose it for this replay.
+# A key that cannot act is warned of; what the trace sets is not, as the user did not choose it.
 idle="warning \(configuration\): 'ddr.ti_open_row' is set \(command line\) but has no effect with"
 idle+=" ddr.scheduler = fcfs: it needs ddr.scheduler = ti or closed_page"
 expect idle 0 "$idle" -- replay "$trace" -s ddr.scheduler=fcfs -s ddr.ti_open_row=ready
@@ -182,7 +182,7 @@ expect part_cl 2 'ddr.CL' 'more cycles at' -- replay "$trace" -s ddr.CL=3cycles
 expect clock 2 'ddr.clock' '125' -- replay "$trace" -s ddr.clock=90MHz
 expect part_alone 2 'ddr.preset=data_sheet' -- replay "$trace" -s ddr.part=mt46h32m16lf
 expect stays 0 'fovea: the timings stay as recorded, in clocks; ddr.preset=data_sheet takes the part' -- replay "$trace" -s ddr.clock=270MHz
-# No replay of a text trace warns of what nobody has set, whatever part, grade and clock it is for.
+# No replay of a text trace warns of what the user has not set, whatever part, grade and clock it is for.
 quiet() {
   replay "$out/good.txt" "$@" 2>"$out/quiet.err" >/dev/null || fail "$*: $(cat "$out/quiet.err")"
   grep -q 'warning' "$out/quiet.err" && fail "$* warns of defaults: $(cat "$out/quiet.err")"

@@ -186,7 +186,7 @@ TEST(ReplayPathTest, ACompletionElsewhereReleasesARecord) {
   }
 }
 
-TEST(ReplayPathTest, ACompletionLongAgoHoldsNobodyUp) {
+TEST(ReplayPathTest, ACompletionLongAgoHoldsNoRequestUp) {
   const trace::TraceInfo info = board_info();
   Listed l;
   for (unsigned n = 0; n < 6'000; ++n) {
@@ -208,7 +208,7 @@ TEST(ReplayPathTest, RecordsThatWaitForEachOtherAreAnError) {
   app::ReplayPath path("t", info, l, params, false);
   try {
     path.run_before(kNever);
-    FAIL() << "a deadlock that nobody sees";
+    FAIL() << "a deadlock that is not found";
   } catch (const UserError& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr("stops before its end"));
   }

@@ -249,7 +249,7 @@ TEST(RecorderCoreTest, TheSleeperWaitedForItsWrites) {
   }
 }
 
-TEST(RecorderCoreTest, AnInterruptToComeWakesNobody) {
+TEST(RecorderCoreTest, AnInterruptToComeEndsNoSleep) {
   Feed f;
   f.read(100, 100, 120, 130);
   f.recorder().interrupt(522 * kClock);

@@ -257,7 +257,7 @@ Figures replay(const std::string& file, const Watched& watched, const Change& ch
   path.finish();
   Figures f;
   if (lost == Lost::kOthers) {
-    EXPECT_GT(unchained->changed(), 1'000u) << "nobody waits for others";
+    EXPECT_GT(unchained->changed(), 1'000u) << "no master waits for others";
   }
   if (watched.latencies) latencies.add_to(f);
   latencies.add_times_to(f);

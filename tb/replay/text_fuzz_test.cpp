@@ -191,7 +191,7 @@ TEST(TextFuzzTest, LongRunsOfOneMasterAreReadTheSameInPieces) {
          {std::size_t{1}, std::size_t{7}, std::size_t{600}, std::size_t{1500}})
       for (const unsigned turns : {0u, 1u, 700u})
         ASSERT_EQ(read_all(text, {100 + rng.below(5000), ahead, true}, turns), expected);
-    // A defect far behind is found whoever comes there first.
+    // A defect far behind is found, whichever of the two parsers comes there first.
     const Read broken = read_all(text + "0 99 R 0x0 4\n", kCareful, 0);
     EXPECT_NE(broken.error, "");
     ASSERT_EQ(read_all(text + "0 99 R 0x0 4\n", {200, 7, true}, 1), broken);

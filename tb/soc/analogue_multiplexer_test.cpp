@@ -20,7 +20,7 @@ using Channels = std::vector<unsigned>;
 
 TEST(AnalogueMultiplexer, LeadsTheChannelOfItsSelectLinesThrough) {
   Watched w;
-  EXPECT_EQ(w.part.channel(), 0u) << "lines that nobody drives are low";
+  EXPECT_EQ(w.part.channel(), 0u) << "lines that no output drives are low";
   for (unsigned channel = 0; channel < MULTIPLEXER_CHANNELS; ++channel) {
     w.part.select(channel);
     EXPECT_EQ(w.part.channel(), channel);
@@ -50,7 +50,7 @@ TEST(AnalogueMultiplexer, AStuckLineKeepsItsLevel) {
   EXPECT_THROW(w.part.stick(MULTIPLEXER_LINES, true), std::out_of_range);
 }
 
-TEST(AnalogueMultiplexer, ItsPinsAreNobodyElses) {
+TEST(AnalogueMultiplexer, ItsPinsBelongToNoOtherPart) {
   for (unsigned channel = 0; channel < MULTIPLEXER_CHANNELS; ++channel)
     EXPECT_EQ(MULTIPLEXER_CHANNEL(MULTIPLEXER_WORD(channel) | ~MULTIPLEXER_PIN_MASK), channel);
   const unsigned first = 32 * MULTIPLEXER_BANK + MULTIPLEXER_LOW;

@@ -118,7 +118,7 @@ constexpr Picoseconds kScrPeriod = 8000;  // 125 MHz
 constexpr std::uint32_t kSdram = 0x8000'0000;
 
 /// A reader of priority 1 and a DMA of priority 2 compete at one edge of the crossbar; the DMA gets
-/// priority 0 `before` that edge. The answer is who is served first.
+/// priority 0 `before` that edge. The answer is which is served first.
 std::string winner(Picoseconds before, bool strict) {
   MemorySystem system({}, strict, Frequency(250'000'000), Frequency(125'000'000));
   const Picoseconds issue = 10 * kPsPerUs + 100;
@@ -138,7 +138,7 @@ std::string winner(Picoseconds before, bool strict) {
   Alarm urgent("urgent", arbitration - before,
                [&system] { system.priority[index(Master::kEdmaTc0Read)].write(0); });
   sc_core::sc_start(ps_time(20 * kPsPerUs));
-  if (!reader.first || !dma_first) return "nobody";
+  if (!reader.first || !dma_first) return "no master";
   return reader.first < dma_first ? "reader" : "dma";
 }
 

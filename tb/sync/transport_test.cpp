@@ -47,7 +47,7 @@ std::string transported(Picoseconds at, Picoseconds early) {
   reader.sockets[0]->bind(between.in);
   between.out.bind(*system.scr.target[index(Master::kEdmaTc1Read)]);
   sc_core::sc_start(ps_time(20 * kPsPerUs));
-  if (!reader.first) return "nobody";
+  if (!reader.first) return "no read";
   return std::to_string(between.called) + " + " + std::to_string(between.said) + " = " +
          std::to_string(between.issued);
 }

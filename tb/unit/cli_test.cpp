@@ -475,7 +475,7 @@ TEST_F(ProgramTest, ASecondSignalEndsTheProgramAndItsEncoder) {
   EXPECT_EQ(ended.status, -SIGTERM) << ended.err;
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
   const std::string stat = "/proc/" + std::to_string(std::stoi(read_text(dir / "pid"))) + "/stat";
-  // A zombie until whoever inherits it looks.
+  // A zombie until the process that inherits it waits for it.
   const auto gone = [&] { return read_text(stat).empty() || read_text(stat).find(") Z ") != std::string::npos; };
   for (int i = 0; i < 200 && !gone(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_TRUE(gone()) << "the encoder is left";

@@ -17,12 +17,12 @@ using Kind = Diagnostics::Kind;
 
 auto one(Kind kind, const char* text) { return ElementsAre(Pair(Pair(kind, text), 1u)); }
 
-TEST(DiagnosticsRefTest, NobodyHearsNothingAndNothingIsAnError) {
-  const DiagnosticsRef nobody;
-  nobody.guest("a");
-  EXPECT_NO_THROW(nobody.not_modelled("b"));
-  EXPECT_NO_THROW(nobody.configuration("c"));
-  EXPECT_THAT(nobody.counts(), IsEmpty());
+TEST(DiagnosticsRefTest, AnUnboundReferenceKeepsNothingAndNothingIsAnError) {
+  const DiagnosticsRef unbound;
+  unbound.guest("a");
+  EXPECT_NO_THROW(unbound.not_modelled("b"));
+  EXPECT_NO_THROW(unbound.configuration("c"));
+  EXPECT_THAT(unbound.counts(), IsEmpty());
   EXPECT_THAT(DiagnosticsRef::current().counts(), IsEmpty()) << "there is no scope";
 }
 
@@ -61,7 +61,7 @@ TEST(DiagnosticsScopeTest, TheInnermostOneIsCurrentAndWhatWasTakenStays) {
   DiagnosticsRef::current().guest("outer");
   EXPECT_EQ(outer.counts().begin()->second, 2u);
   whole.reset();
-  DiagnosticsRef::current().guest("nobody's");
+  DiagnosticsRef::current().guest("of no scope");
   EXPECT_EQ(outer.counts().size(), 1u);
 }
 

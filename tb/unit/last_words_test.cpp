@@ -113,8 +113,8 @@ TEST(FrameBudgetTest, PartsThatRoundToZeroAreLeftOut) {
   EXPECT_THAT(frame_budget(rows), StartsWith("budget  40.0 ms a displayed frame: remap 28.7, idle 11.3\n"));
 }
 
-// Both ended sleeps within remaps: nobody can tell for whom the others were.
-TEST(FrameBudgetTest, TwoWhoAreWaitedForAreBothNamed) {
+// Both EDMA and engine ended sleeps within remaps: the figures do not tell for which of them the other sleeps were.
+TEST(FrameBudgetTest, TwoPartsThatAreWaitedForAreBothNamed) {
   auto rows = budget_rows();
   rows.push_back(counted("cpu.remap.idle.dma", 1));
   rows.push_back(counted("cpu.remap.idle.engine", 599));

@@ -58,7 +58,7 @@ struct Memory : ParamGroup {
 
 struct Priority : ParamGroup {
   EnumParam arm{*this, "arm", "reset", {"reset", "0", "7"}, "of the core", Origin::kChoice, ""};
-  EnumParam idle{*this, "idle", "reset", {"reset", "0", "7"}, "of nobody", Origin::kChoice, ""};
+  EnumParam idle{*this, "idle", "reset", {"reset", "0", "7"}, "of no master", Origin::kChoice, ""};
   Priority() : ParamGroup("priority") {}
 };
 

@@ -268,7 +268,7 @@ TEST(JudgeTest, ASlipIsNoLossAndWhatHappensTwiceIs) {
   EXPECT_TRUE(judge(result_of(stats), conditions).longer) << "of the two, one was for the decoder's sake";
   stats["frame.dropped"] = 1;
   EXPECT_FALSE(judge(result_of(stats), conditions).longer) << "a drop is a loss";
-  // Whoever allows no repeated frame means it.
+  // A user's condition that no frame is repeated is taken literally.
   stats["frame.dropped"] = 0;
   stats["frame.repeated"] = 1;
   stats["frame.repeated_relock"] = 0;

@@ -271,7 +271,7 @@ TEST_F(LimitsTest, NamesWhatBindsAndNothingElse) {
   EXPECT_THAT(d.out,
               HasSubstr("The priority of arm binds: as the highest (priority.arm=0) it is 16.1 ms, 11.0 % better.\n"
                         "  Does not bind: "))
-      << "a free choice is nobody's belief";
+      << "a free choice has no belief";
   EXPECT_THAT(d.out, HasSubstr("Does not bind: ddr_latency (+0.6 %; family, +0.6 to +1.9 %)"));
   // A replay of what is no trace is no answer, and that is said.
   EXPECT_THAT(d.out, HasSubstr("display (its replay failed: error: '"));

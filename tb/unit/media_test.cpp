@@ -522,7 +522,7 @@ TEST_F(FfmpegTest, AStopEndsTheDecodingAndLeavesNoProcess) {
     signal.join();
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
     const pid_t pid = std::stoi(read_text(pid_file));
-    // A zombie until whoever inherits it looks: gone, or about to go.
+    // A zombie until the process that inherits it waits for it: gone, or about to go.
     bool gone = false;
     for (int i = 0; i < 500 && !gone; ++i) {
       const std::string state = read_text("/proc/" + std::to_string(pid) + "/stat");

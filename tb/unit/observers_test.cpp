@@ -58,7 +58,7 @@ TEST_F(ObserversTest, AMovedSubscriptionKeepsTheEntryAndAnAssignedOneReleasesIts
   EXPECT_EQ(calls, "ab");
 }
 
-TEST(ObserversChangeTest, TheFirstAndTheLastOneChangeWhetherAnybodyObserves) {
+TEST(ObserversChangeTest, TheFirstAndTheLastOneChangeWhetherThereIsAnObserver) {
   std::string changes;
   Observers<int*> list{[&] { changes += list.empty() ? '-' : '+'; }};
   int x = 0;

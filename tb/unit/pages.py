@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Markdown pages: width of the lines, headings of READMEs, links to files and headings. C, C++ and
-SystemVerilog: width of the lines. In a git checkout: what is tracked at the top, and what is tracked and ignored.
+SystemVerilog: width of the lines. Pages and sources: words for persons, where a part of a program or chip is meant.
+In a git checkout: what is tracked at the top, and what is tracked and ignored.
 Usage: pages.py SOURCE"""
 import os
 import re
@@ -16,6 +17,14 @@ FREE = {"README.md", "model/howto/README.md", "traces/pictures/README.md", "tb/r
 TOP = {"CMakeLists.txt", "CMakePresets.json", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE", "README.md",
        "model", "rtl", "scripts", "sw", "tb", "traces"}
 CODE = (".h", ".cpp", ".c", ".S", ".sv")
+WORDED = CODE + (".svh", ".py", ".sh", ".yaml", "CMakeLists.txt", ".md")
+PERSONS = re.compile(r"\b(somebody|nobody|whoever|anybody|everybody)\b", re.IGNORECASE)
+FOREIGN = ("tb/e2e/texts/", "tb/report/axe-core/", "tb/unit/pages.py", "tb/unit/pages_complains.sh")
+# Texts of messages that tests or recorded outputs repeat, by file.
+KEPT = {"sw/fovea/cli/params_table.cpp": "nobody's but the user's",
+        "sw/fovea/regression/markdown.cpp": '"nobody"', "tb/regression/first_baseline_test.cpp": "**who**: nobody",
+        "model/engine/rtl/slave_checker.h": "nobody asked for", "tb/cosim/slave_checker_test.cpp": "nobody asked for",
+        "model/engine/remap_engine.cpp": "that nobody answers", "tb/engine/chip_test.cpp": "that nobody answers"}
 
 
 def files_of(source, endings):
@@ -55,8 +64,19 @@ def strays(source):
         yield f"{name}: is tracked, though .gitignore names it"
 
 
+def persons(source):
+    for file in sorted(files_of(source, WORDED)):
+        name, text = file.relative_to(source).as_posix(), file.read_text(encoding="utf-8", errors="replace")
+        if name.startswith(FOREIGN):
+            continue
+        for number, line in prose(text) if file.suffix == ".md" else enumerate(text.split("\n"), 1):
+            for word in PERSONS.findall(line.replace(KEPT.get(name, ""), "")):
+                yield f"{name}:{number}: '{word}'; name the part: the caller, another process, no master, a user"
+
+
 def complaints(source):
     yield from strays(source)
+    yield from persons(source)
     for file in sorted(files_of(source, CODE)):
         name = file.relative_to(source).as_posix()
         for number, line in enumerate(file.read_text(encoding="utf-8").split("\n"), 1):

@@ -228,7 +228,7 @@ TEST_F(RunnerTest, AResultThatIsNotThisPointsIsRefused) {
   EXPECT_THAT(user_error([&] { run({point("good")}); }), HasSubstr("its point.json is not that of this point"));
 }
 
-TEST_F(RunnerTest, StopsItsChildrenAndNobodyElses) {
+TEST_F(RunnerTest, StopsItsChildrenAndNoOtherProcess) {
   Child other({"/bin/sh", "-c", "while :; do sleep 0.02; done"}, dir_ / "o", dir_ / "e");
   PointStore store(dir_ / "store");
   Runner runner(store, options(3));

@@ -127,7 +127,7 @@ std::vector<Case> all_cases() {
     for (const Old old : kOld)
       for (const New now : kNew)
         for (const Foreign foreign : kForeign) {
-          // A replay has no guest that could fail, and nobody to visit it here.
+          // A replay has no guest that could fail, and calls no visitor here.
           const bool replay = command == "replay";
           if (replay && (old == Old::kFailed || now == New::kFailed || foreign == Foreign::kDuring))
             continue;

@@ -78,8 +78,8 @@ TEST(RunDirTest, LeftoverTmpOfARunIsEmptied) {
   EXPECT_FALSE(fs::exists(dir / "r.tmp/frames/frame_000000.png"));
 }
 
-// Whoever is killed while he writes the first file, or while he removes the files of an earlier run in whatever order
-// (Fovea has removed config.json in the middle), leaves a folder that the next run takes.
+// A run that is killed while it writes the first file, or while it removes the files of an earlier run in whatever
+// order (Fovea has removed config.json in the middle), leaves a folder that the next run takes.
 TEST(RunDirTest, WhatAKilledRunLeftIsTakenWhateverIsMissing) {
   for (const auto& [name, text] : {std::pair("stats.json", "{}"), {"uart.log", ""}, {"config.json", ""},
                                    {"config.json", R"({"format": "fov)"}, {"frames/frame_000000.png", ""}}) {
@@ -205,7 +205,7 @@ TEST(RunDirTest, AFolderPutInThePlaceOfTheUnfinishedOneGetsNoFiles) {
   EXPECT_EQ(read_text(dir / "moved/uart.log"), "2");
 }
 
-TEST(RunDirTest, NobodyElseMayEnterTheUnfinishedFolder) {
+TEST(RunDirTest, OnlyItsOwnerMayEnterTheUnfinishedFolder) {
   TempDir dir;
   const mode_t mask = ::umask(027);
   {
@@ -219,7 +219,7 @@ TEST(RunDirTest, NobodyElseMayEnterTheUnfinishedFolder) {
 }
 
 TEST(RunDirTest, FoldersOfAnotherUserAreRefused) {
-  if (::geteuid() != 0) GTEST_SKIP() << "only root can make a folder that belongs to somebody else";
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can make a folder that belongs to another user";
   TempDir dir;
   for (const char* name : {"r.tmp", "done"}) {
     dir.write(std::string(name) + "/config.json", kConfig);
@@ -322,7 +322,7 @@ TEST(ReadFileTest, AFileOfTheLargestSizeIsReadAndOneByteMoreIsNot) {
   EXPECT_THAT(user_error([&] { read_file(file, 9); }), HasSubstr("larger than the 9 bytes"));
 }
 
-TEST(CheckedFileTest, ANewFileTakesNobodysPlace) {
+TEST(CheckedFileTest, ANewFileReplacesNoOther) {
   TempDir dir;
   dir.write("f", "mine");
   fs::create_symlink(dir / "elsewhere", dir / "link");
@@ -352,10 +352,10 @@ TEST(OutputFileTest, AnEarlierFileStaysUntilTheNewOneIsWhole) {
     whole.write("trace 3");
     EXPECT_EQ(read_text(dir / "f"), "trace 1");
     whole.commit();
-    dir.write("f.tmp", "of somebody else");
+    dir.write("f.tmp", "of another process");
   }
   EXPECT_EQ(read_text(dir / "f"), "trace 3");
-  EXPECT_EQ(read_text(dir / "f.tmp"), "of somebody else");
+  EXPECT_EQ(read_text(dir / "f.tmp"), "of another process");
 }
 
 TEST(OutputFileTest, OnlyFilesOfItsKindAndEmptyOnesAreReplaced) {

@@ -161,7 +161,7 @@ TEST_F(SemihostingTest, ConsoleCarriesThreeStreams) {
   EXPECT_EQ(call_with(0x07, 0), kFailed);
 }
 
-TEST_F(SemihostingTest, OutputThatNobodyTakesIsNotWritten) {
+TEST_F(SemihostingTest, OutputThatTheConsoleDoesNotTakeIsNotWritten) {
   const auto out = open(":tt", 4);
   console.full = true;
   EXPECT_EQ(write(out, "to out"), 6u);

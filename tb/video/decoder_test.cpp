@@ -48,7 +48,7 @@ class Chart : public PictureSource {
   Picture picture_{kWidth, kHeight};
 };
 
-/// A wire that nobody looks at.
+/// A wire without a receiver.
 struct Wire : Bt656If {
   bool begin_line(const Bt656Line&) override { return false; }
   void take_line(std::span<const std::uint8_t>) override {}
@@ -175,7 +175,7 @@ TEST(DecoderTest, PictureThatDoesNotFitIsAUserError) {
 }
 
 // One story in one process: the cases build on each other and run in this order.
-TEST(DecoderTest, NobodyElseAnswersOnI2cAndIdsAreRight) {
+TEST(DecoderTest, NoOtherAddressAnswersOnI2cAndIdsAreRight) {
   run_for(kPsPerNs);
   EXPECT_FALSE(bench->tvp->i2c_start(0x5C, false));
   EXPECT_EQ(bench->i2c_read(0x80), 0x51);
@@ -428,7 +428,7 @@ TEST(DecoderTest, TheLinesOfTheFrameBeforeAreCountedAndKeptOnRequest) {
   EXPECT_EQ(count_at(b, tvp, next + lines_time(3) - 101 * kPsPerUs), kStd.lines) << "not yet";
   EXPECT_EQ(count_at(b, tvp, next + lines_time(3) - 99 * kPsPerUs), kStd.lines - 3);
   run_until(next + lines_time(kStd.lines + 10));
-  EXPECT_EQ(count_in(b, tvp), kStd.lines - 3) << "as long as nobody asks again";
+  EXPECT_EQ(count_in(b, tvp), kStd.lines - 3) << "until the next request";
   b.i2c_write(tvp, 0x97, 0);
   run_for(kPsPerMs);
   EXPECT_EQ(count_in(b, tvp), kStd.lines - 3) << "no request";
@@ -552,7 +552,7 @@ TEST(CameraSignalTest, AGenlockedCameraReturnsToItsStandardWithAFrameOfTheOthers
       EXPECT_EQ(camera.line_edge(0), kFirst);
       camera.set_standard(!k625Here, placement_of(bench->tvp_params, !k625Here), kFirst + 5 * kFrame / 2,
                           clock.edge(kFirst + 2 * kFrame));
-      EXPECT_EQ(camera.line_edge(0), kFirst + 5 * kFrame / 2) << "another standard follows nobody";
+      EXPECT_EQ(camera.line_edge(0), kFirst + 5 * kFrame / 2) << "a camera of another standard follows no other camera";
       const std::uint64_t edge = kFirst + 9 * kFrame + late;
       camera.set_standard(k625Here, placement_of(bench->tvp_params, k625Here), edge, clock.edge(edge));
       EXPECT_EQ(camera.line_edge(0), genlocked ? kFirst + 9 * kFrame + then : edge) << genlocked << ", " << late;

@@ -48,7 +48,7 @@ TEST_F(DisplayTest, HopelessMemoryGivesBlackAndCountsEveryBurst) {
   EXPECT_EQ(underflows(), std::uint64_t{23} * kRows);
   EXPECT_EQ(b.frames[0].picture, Picture(720, kRows));
   b.venc_regs.write(VMOD, 0);
-  run_for(25 * kPsPerMs);  // late answers come to nobody
+  run_for(25 * kPsPerMs);  // late answers come when no read waits for them
 }
 
 // Bit 6 of MISCCTL.

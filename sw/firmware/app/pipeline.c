@@ -193,7 +193,7 @@ static void wait_for_frame_end(void) {
   isif_watch();
   intc_enable(IRQ_VPSSINT0, 2);
 #ifndef TIME_DIVISION
-  /* The time between two frames is that of the camera's clock, which nobody tells. */
+  /* The time between two frames follows from the camera's clock, which no parameter gives. */
   uint32_t before = 0, frames = 0;
   while (pipe.progressive && sleep_at_most(LOCK_TIMEOUT_TICKS) == IRQ_VPSSINT0) {
     intc_acknowledge(IRQ_VPSSINT0);
@@ -300,7 +300,7 @@ void pipeline_done(int good) {
     flip();
   irq_restore(cpsr);
 #ifdef TIME_DIVISION
-  /* The result waits for nobody; its source may be marked before the camera gets it. */
+  /* The result is queued already, so there is time to mark its source before the camera gets it. */
   if (source != CAPTURE_NONE) pipeline_turns_release(source);
 #endif
 }

@@ -222,7 +222,7 @@ static int run_tiles(const staged_table_t *staged, uint32_t in, uint8_t *out) {
 static void run(const remap_table_t *table, const void *in, void *out) {
   const staged_table_t *staged = table->encoded;
   /* No line of the result may be in the D-cache: the EDMA writes a part of it to memory. Nor may
-   * one of the source stay there: whoever reads it afterwards wants to see what memory holds. */
+   * one of the source stay there: code that reads it afterwards needs what memory holds. */
   dcache_invalidate_range(out, table->height * table->pitch_bytes);
   edma_clear(CODE_LAST);
   for (uint32_t b = 0; b < TILE_BANKS; ++b) open_bank(staged, b);

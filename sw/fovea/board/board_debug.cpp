@@ -9,8 +9,8 @@ namespace {
 constexpr std::uint64_t kInternal = INTERNAL_RAM_BYTES, kDataWindow = INTERNAL_RAM_DATA_BASE;
 
 /// Gives the simulation back to its caller at a time. Made before the simulation starts.
-/// Masters and memory may act in the same instant, and would then go on up to the next event of somebody else; an event
-/// right behind the pause keeps them at its time.
+/// Masters and memory may act in the same instant, and would then go on up to the next event of another process; an
+/// event right behind the pause keeps them at its time.
 class Pause : public sc_core::sc_module {
  public:
   explicit Pause(sc_core::sc_module_name name) : sc_module(name) {

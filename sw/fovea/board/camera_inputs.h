@@ -15,7 +15,7 @@
 namespace fovea::app {
 
 /// Makes the source of each camera, lets it render a field ahead on a thread of its own and, if wanted,
-/// remembers what it sent. To live as long as the board.
+/// remembers what it sent. Must outlive the board.
 class CameraInputs {
  public:
   /// @param keep_pictures for sent()
@@ -29,7 +29,7 @@ class CameraInputs {
   const std::vector<video::PictureSource*>& sources() const { return sources_; }
   /// What the cameras see, one for each camera.
   const std::vector<const video::StampedSource*>& views() const { return views_; }
-  /// What came over an input of a frame.
+  /// The field that a source sent for a frame, with its picture.
   struct Sent {
     const video::Picture* picture;  ///< null if it is unknown or not kept any more
     std::uint64_t field;            ///< of its source; the first one of a frame of two

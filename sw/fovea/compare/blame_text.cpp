@@ -108,7 +108,7 @@ void find_cause(Blame& blame, bool slower) {
       }
 }
 
-/// For a difference without more clocks: whoever executes more all the same.
+/// For a difference without more clocks: names the function that executes more all the same.
 std::string more_instructions(const Difference& difference) {
   const auto more = [](const FunctionChange& f) { return f.instructions_after - f.instructions_before; };
   const auto most = std::max_element(difference.functions.begin(), difference.functions.end(),

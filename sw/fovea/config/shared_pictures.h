@@ -6,11 +6,11 @@
 
 namespace fovea::app {
 
-/// Of the cameras that show a picture or film, those for which no file is set take in turn the pictures of those that
-/// have one in their row: the first of them that of the first, and so on. With a picture come the other keys that the
-/// row sets of it and of the lens, calibrations applied, but not how the camera is connected, mounted or clocked. A key
-/// that the camera's own row sets stays. To be called when everything else is set, calibrations included.
-/// @return a sentence for people that names the cameras; empty: nothing was taken over
+/// A camera that shows a picture or film, but for which no file is set, uses the picture of a camera with a file in its
+/// own row: the first camera without a file that of the first with one, and so on, cyclically. The keys of picture and
+/// lens that this row sets are copied with it, but not those of connection, mounting and clock. Keys that the camera's
+/// own row sets stay. To be called last, after calibrations have been applied.
+/// @return a sentence for the user that names the cameras; empty: no picture is shared
 std::string share_pictures(const ParamSet& params, Experiment& experiment);
 
 }  // namespace fovea::app

@@ -146,7 +146,7 @@ std::string GdbSession::where() {
   }
   std::string out = fmt::format("at {} ns\n", ns_text(now)) + core_line();
   return out +
-         (views_.masters ? views_.masters->where(now) : "memory answers at once: nobody waits\n");
+         (views_.masters ? views_.masters->where(now) : "memory answers at once: no master waits\n");
 }
 
 std::string GdbSession::show_log(const std::string& what) {

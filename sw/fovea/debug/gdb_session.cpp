@@ -64,10 +64,10 @@ void GdbSession::stopped(const cpu::CoreControl::Stop& s) {
                                                                 : GdbStop::Reason::kAccess;
       break;
   }
-  const bool nobody = s.reason == Reason::kTime && stop.reason != GdbStop::Reason::kOther;
+  const bool no_instruction = s.reason == Reason::kTime && stop.reason != GdbStop::Reason::kOther;
   const bool over_watched = s.reason == Reason::kWatch && !s.past;
   GdbResume resume = serve(stop);
-  if (nobody && resume.kind == GdbResume::Kind::kStep)
+  if (no_instruction && resume.kind == GdbResume::Kind::kStep)
     resume = serve({.reason = GdbStop::Reason::kStep});
   go_on(resume, over_watched && resume.kind == GdbResume::Kind::kStep);
 }

@@ -133,7 +133,7 @@ std::vector<Finding> explain_difference(const Inputs& inputs_a, std::string_view
   const auto before = a.value(names::kRemapTimeMean), after = b.value(names::kRemapTimeMean);
   if (before && after && *before > 0) {
     const double change = *after - *before;
-    // A tenth of the smallest change that anybody would act on.
+    // A tenth of the smallest change on which a reader would act.
     constexpr double kSame = 1e-3;
     out.push_back(
         {"remap_difference",

@@ -189,8 +189,8 @@ bool ChildProcess::ended() {
 int ChildProcess::finish() {
   close_fd(data_);
   last_ = Clock::now();
-  // Its messages are read meanwhile, so that it never blocks on one. Whoever keeps its streams open beyond its end,
-  // such as a program that it has started, is not waited for.
+  // Its messages are read meanwhile, so that it never blocks on one. A process that keeps its streams open beyond its
+  // end, such as a program that it has started, is not waited for.
   while (!ended()) {
     check_patience();
     pollfd fd{error_, POLLIN, 0};

@@ -1,4 +1,4 @@
-// A program in a process of its own, connected by pipes, that nobody waits for without a limit.
+// A program in a process of its own, connected by pipes. Each wait for it has a limit.
 #pragma once
 #include <sys/types.h>
 
@@ -67,8 +67,8 @@ class ChildProcess {
   std::string messages_;
 };
 
-/// Kills all children of this kind that run, and what they have started. A signal handler may call it: nobody else ends
-/// them when a signal is about to end this process.
+/// Kills all children of this kind that run, and what they have started. A signal handler may call it: no other code
+/// ends them when a signal is about to end this process.
 void kill_children();
 
 }  // namespace fovea::app

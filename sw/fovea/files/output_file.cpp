@@ -142,7 +142,7 @@ void replace_file(int folder, const fs::path& path, std::string_view text) {
   fs::path working = path;
   working += ".tmp";
   const auto remove = [&] { ::unlinkat(folder, working.filename().c_str(), 0); };
-  remove();  // what an earlier process left, or a link that somebody planted
+  remove();  // what an earlier process left, or a link that another user planted
   CheckedFile file(working, folder);
   try {
     file.write(text);

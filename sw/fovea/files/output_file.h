@@ -13,8 +13,8 @@ namespace fovea::app {
 /// The file appears under its name only when it is complete: it is written as NAME.tmp and then
 /// renamed; an earlier file is kept until then. Only an empty file or one of the same kind is
 /// replaced, and symbolic links are not followed. A device or a pipe is written directly.
-/// NAME.tmp is locked as long as the object exists, so that whoever reads NAME, changes it and
-/// commits it does all of that alone, if he constructs the object first. One that a crash left is
+/// NAME.tmp is locked as long as the object exists: a process that constructs the object, and then
+/// reads NAME, changes it and commits it, does all of that alone. A NAME.tmp that a crash left is
 /// taken over.
 class OutputFile {
  public:

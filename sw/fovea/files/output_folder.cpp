@@ -157,7 +157,7 @@ void OutputFolder::take() {
   const fs::path mark = working_ / kind_.mark;
   if (has_type(mark, fs::file_type::regular) && kind_.is_foreign_mark(mark))
     fail(working_, fmt::format("it exists and is not left by {}; remove it or choose another name", kind_.owner));
-  // Only the owner may enter, so that nobody can place links in the folder while the files are written.
+  // Only the owner may enter, so that no other user can place links in the folder while the files are written.
   mode_ = (0777 & ~umask_now()) | (mine.st_mode & S_ISGID);
   if (!made && ::fchmod(lock_, 0700) != 0) fail(working_, std::strerror(errno));
   set_remove(true);

@@ -13,7 +13,7 @@
 
 namespace fovea::app {
 
-/// What folders of one kind hold. A file with another name is somebody else's, and is never removed.
+/// What folders of one kind hold. A file with another name is not Fovea's, and is never removed.
 struct FolderKind {
   std::string_view owner;           ///< for messages: "a Fovea run"
   bool (*is_file)(std::string_view name);  ///< of a file's name relative to the folder
@@ -41,7 +41,7 @@ bool remove_folder(const std::filesystem::path& dir, const FolderKind& kind, boo
 /// The unfinished folder NAME.tmp, locked against other processes until the object ends. Its files are created through
 /// its descriptor, and never through a symbolic link. place() gives it the name of the earlier one, which at every
 /// moment exists whole: under its own name, or beside it. Without place() it is removed; after a crash it remains
-/// until somebody makes the next one.
+/// until the next run makes a folder of this name.
 class OutputFolder {
  public:
   /// Creates NAME.tmp, which only its owner may enter. One that the same user's earlier process left is emptied.

@@ -8,7 +8,7 @@
 
 namespace fovea::limits {
 
-/// What somebody has asked for, and by which option.
+/// A figure that the user has asked for, and by which option.
 struct AskedFigure {
   std::string name, option;
 };

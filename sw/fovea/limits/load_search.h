@@ -56,7 +56,7 @@ class LoadSearch {
 /// The first of load, load.1 ... that the experiment does not use. @throws UserError if all are used
 std::string free_load(const ParamSet& params);
 
-/// Traffic that somebody may want to run beside the correction.
+/// Traffic that a user may want to run beside the correction.
 struct Demand {
   std::string name;
   double low, likely, high;  ///< MB/s; all the same if a document gives the figure

@@ -57,7 +57,7 @@ constexpr UnitName kUnits[] = {{"count", IntParam::Unit::kCount, ""},
 const UnitName& unit_of(const std::string& name) {
   for (const UnitName& u : kUnits)
     if (name == u.name) return u;
-  FOVEA_CHECK(false, "a unit that nobody knows: " + name);
+  FOVEA_CHECK(false, "a unit that the table of units lacks: " + name);
 }
 
 }  // namespace

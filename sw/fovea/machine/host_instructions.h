@@ -5,8 +5,8 @@
 
 namespace fovea::app {
 
-/// Of the thread that constructs it, outside of the kernel, from then on. Many hosts (virtual machines,
-/// containers) have no counter, or let nobody use it.
+/// Counts for the thread that constructs it, outside of the kernel, from then on. Many hosts (virtual
+/// machines, containers) have no counter, or let no program use it.
 class HostInstructions {
  public:
   HostInstructions();

@@ -75,7 +75,7 @@ std::optional<Ended> Child::ended() {
 void Child::ask_to_end() { signal(SIGTERM); }
 void Child::kill() { signal(SIGKILL); }
 
-/// The number cannot have passed to another process, since nobody has waited for it yet.
+/// The number cannot have passed to another process, since this process has not waited for it yet.
 void Child::signal(int number) {
   if (!ended()) ::kill(pid_, number);
 }

@@ -143,7 +143,7 @@ void Runner::finish(Running& running, const Ended& ended) {
   const std::filesystem::path folder = store_.folder(known.key).string() + ".tmp";
   const std::string messages = app::read_file(folder / "messages.txt", kMaxMessages);
   if (ended.status != 0) result.message = reason_in(messages);
-  // What somebody else has ended is no result, and neither is what never began.
+  // A point that a signal has ended has no result, and neither has one that never began.
   const bool by_signal = ended.signal || ended.status == 128 + SIGINT || ended.status == 128 + SIGTERM;
   if (by_signal || ended.status == 127) {
     store_.abandon(known.key);

@@ -9,8 +9,8 @@
 namespace fovea::app {
 namespace {
 
-/// FNV-1a with 64 bits (Fowler, Noll, Vo): tells versions of one program apart; it need not withstand
-/// anybody.
+/// FNV-1a with 64 bits (Fowler, Noll, Vo): distinguishes versions of one program; it need not withstand
+/// an attacker.
 class Hash {
  public:
   void add(std::string_view bytes) {

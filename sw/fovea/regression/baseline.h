@@ -18,7 +18,7 @@ enum class Worse { kHigher, kLower, kBoth };
 enum class Kind {
   kExact,     ///< a run: `fovea bless` replaces it
   kAnalytic,  ///< a formula or a standard: never replaced
-  kBudget,    ///< a limit that somebody set: never replaced
+  kBudget,    ///< a limit that a user set: never replaced
 };
 std::string_view kind_name(Kind kind);
 

@@ -143,7 +143,7 @@ CheckResult check_run(const RunFigures& run, const Baseline& baseline, bool acro
         app::one_line(baseline.file.string()), baseline.version, baseline.commit));
   check_circumstances(run, baseline);
   CheckResult out;
-  // Each hint compares a name with all others. Whoever has more than these unknown has not mistyped them.
+  // Each hint compares a name with all others. More unknown names than these are no typing errors.
   constexpr std::size_t kMostHints = 20;
   std::size_t unknown = 0;
   for (const auto& e : baseline.metrics) {

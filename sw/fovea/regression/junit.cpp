@@ -11,7 +11,7 @@ std::string junit_xml(const CheckResult& result, const RunFigures& run, const Ba
                       const std::string& when) {
   const std::string suite = "fovea." + app::xml_text(run.subject.label());
   // Elements in the order, and attributes, that the schemas of Ant's JUnit task, Maven Surefire and
-  // Jenkins' xUnit plugin demand; the time of a comparison is none that anybody measures.
+  // Jenkins' xUnit plugin demand; the time of a comparison is not measured.
   std::string out = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
       "  <testsuite package=\"fovea\" id=\"0\" name=\"{}\" timestamp=\"{}\" hostname=\"localhost\" "

@@ -64,7 +64,7 @@ std::string blame_of_jump(const TrendLine& before, const TrendLine& after) {
     level_clocks(a, b, before_clocks, after_clocks);
     const Difference d = difference_of(before_clocks, after_clocks, circumstances_of(a, b));
     const std::string text = blame_text(d, blame_of(d, d.busy.change() >= 0));
-    return text.empty() ? "nobody, because no function has other clocks" : text;
+    return text.empty() ? "no function, because none has other clocks" : text;
   } catch (const UserError& e) {
     return fmt::format("not known, because {}", e.what());
   }

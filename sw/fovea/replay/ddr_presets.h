@@ -10,8 +10,8 @@
 
 namespace fovea::app {
 
-/// For a trace without recorded settings, in which no firmware has programmed timings: whoever sets part, grade or
-/// clock and no preset has those of the data sheet. @return what is to be said about it
+/// For a trace without recorded settings, in which no firmware has programmed timings: if part, grade or clock are set
+/// and no preset, the timings of the data sheet are chosen. @return what is to be said about it
 std::vector<std::string> choose_ddr_preset(const ReplayParams& params, bool recorded, Experiment& experiment);
 
 /// Sets clock, CL, RL, timings, banks and page size of the part, except keys that were set on the

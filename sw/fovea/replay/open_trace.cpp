@@ -26,7 +26,7 @@ constexpr std::size_t kFirstBytes = 64 << 10;
 class FileBytes final : public trace::ByteSource {
  public:
   explicit FileBytes(const std::filesystem::path& file) : name_(one_line(file.string())) {
-    // O_NONBLOCK: opening a pipe that nobody writes must not hang before the check below.
+    // O_NONBLOCK: opening a pipe that no process writes must not hang before the check below.
     fd_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd_ < 0) fail(std::strerror(errno));
     struct stat info {};

@@ -55,8 +55,8 @@ std::vector<StatRow> ReplayPath::stats() {
   return rows;
 }
 
-/// As bus::WaitStats names them, with the trace's labels. Ports that the trace does not name served
-/// nobody.
+/// As bus::WaitStats names them, with the trace's labels. Ports that the trace does not name served no
+/// requests.
 void ReplayPath::add_wait_rows(const std::string& label, Waits MasterWaits::*direction,
                                const char* name, std::vector<StatRow>& rows) const {
   Waits sum;

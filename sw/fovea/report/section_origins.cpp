@@ -15,7 +15,7 @@ namespace {
 
 std::string code(std::string_view text) { return "<code>" + escaped(text) + "</code>"; }
 
-/// A page is passed on: files have their names, and not the folders of whoever made it.
+/// A page is passed on to other readers: it shows the names of files, not the folders of the user who made it.
 std::string shown(std::string_view text) { return escaped(explain::without_folders(text)); }
 
 std::string changed_parameters(const Results& run) {

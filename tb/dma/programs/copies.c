@@ -1,7 +1,7 @@
 /* How long transfers of the EDMA take, for a test that computes the same from latencies. Prints one line for each:
  * name, bytes more in the longer of two copies, and by how many ticks of the 24 MHz timer it took longer, so that
- * what a copy costs once does not count. The status is the number of copies that moved something else. Nobody else
- * uses the SDRAM meanwhile: the program polls registers from its instruction cache. Register addresses: Linux
+ * what a copy costs once does not count. The status is the number of copies that moved something else. No other
+ * master uses the SDRAM meanwhile: the program polls registers from its instruction cache. Register addresses: Linux
  * drivers/dma/ti/edma.c and arch/arm/mach-davinci/dm365.c. */
 #include <stdint.h>
 #include <stdio.h>

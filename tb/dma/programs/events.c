@@ -231,7 +231,7 @@ static int pin_moves(unsigned pin, unsigned channel) {
   return ended && memcmp(source, target, 4) == 0;
 }
 
-/* That the events which have arrived are those of one channel, whoever is enabled. */
+/* That the events which have arrived are those of one channel, whichever channels are enabled. */
 static void forget_events(void) {
   REG(ECR) = ~0u;
   REG(ECR + 4) = ~0u;

@@ -434,7 +434,7 @@ static void bad_input(void) {
   enum { UART1_DLL = 0x01D06020, NO_BLOCK = 0x01D30000, NOWHERE = 0x40000000, READ = 1, WRITE = 9 };
   clear();
   check("a write to an unmapped address is a bus error", reports((uint32_t)source, NOWHERE, WRITE));
-  check("a write to registers that nobody has", reports((uint32_t)source, NO_BLOCK, WRITE));
+  check("a write to registers that are absent", reports((uint32_t)source, NO_BLOCK, WRITE));
   check("a read of them", reports(NO_BLOCK, (uint32_t)target, READ));
   /* A module without clock answers as it does to the core: reads give 0, writes are lost, with a remark. */
   clear();

@@ -1,6 +1,6 @@
 /* The frame of a random program (random_guests.py), in internal RAM: vectors, stacks, and what of the chip is set up
    before it. The words after the marks are replaced. Faults are skipped; an interrupt is counted, and returns with
-   interrupts masked, so that one that nobody acknowledges does not keep the program from going on. */
+   interrupts masked, so that one without acknowledgement does not keep the program from going on. */
 #include "model/contract/memory_map.h"
     .syntax unified
     .arm

@@ -144,15 +144,15 @@ uint32_t mix_run(uint32_t turns) {
   top->kind = kLetter;
   top->wrapped_as = kCrate;
   top->weight = 40;
-  strcpy(top->label, "A PARCEL FOR SOMEBODY, 1 STONE");
-  strcpy(label, "A PARCEL FOR SOMEBODY, 2 STONE");
+  strcpy(top->label, "A PARCEL FOR CUSTOMER, 1 STONE");
+  strcpy(label, "A PARCEL FOR CUSTOMER, 2 STONE");
   ledger[8][7] = 10;
   for (uint32_t turn = 1; turn <= turns; ++turn) {
     reset_marks();
     mark_left();
     one = 2;
     two = 3;
-    strcpy(other, "A PARCEL FOR SOMEBODY, 3 STONE");
+    strcpy(other, "A PARCEL FOR CUSTOMER, 3 STONE");
     kind = kPacket;
     urgent = !heavier_label(label, other);
     while (one < two) {
@@ -165,7 +165,7 @@ uint32_t mix_run(uint32_t turns) {
     for (char mark = 'A'; mark <= right_mark; ++mark) {
       if (kind == compare_marks(mark, 'C')) {
         wrap(kLetter, &kind);
-        strcpy(other, "A PARCEL FOR SOMEBODY, 4 STONE");
+        strcpy(other, "A PARCEL FOR CUSTOMER, 4 STONE");
         two = (int)turn;
         stamps = (int)turn;
       }

@@ -1,6 +1,6 @@
 #include "support.h"
 
-/// 0x40000000: a page that is there, one that is not, and one that is there for nobody.
+/// 0x40000000: a page that is there, one that is not, and one that no mode may access.
 void map(void) {
   mmu_on();
   uint32_t *coarse = (uint32_t *)(kTables + 0x5000);

@@ -75,7 +75,7 @@ taken:
   msr cpsr_c, r3
   stmia r1!, {r8-r14}
   msr cpsr_c, r5
-  @ BKPT, the prefetch abort that nobody waits for, and SWI 0x80 dump the banks.
+  @ BKPT, a prefetch abort without an address to resume at, and SWI 0x80 dump the banks.
   and r0, r2, #15
   ldr r3, =resume
   ldr r3, [r3]
