@@ -63,6 +63,7 @@ void Isif::latch(const Standard& standard) {
                  owns_write_buffer.read();
   setup_.interlaced = regs.modeset.ccdmd.get();
   setup_.fiinv = regs.sdofst.fiinv.get();
+  setup_.sdofst = regs.sdofst.get();
   // On the wire the order is Cb Y Cr Y. Linux's UYVY settings (YCINSWP = Y8POS = 1) keep it; each
   // of the
   // four swap bits reverses it.
@@ -135,9 +136,9 @@ bool Isif::begin_row(const Bt656Line& l, unsigned index) {
   if (setup_.bytes == 0) return false;
   const bool place = field_ != setup_.fiinv;
   if (index == 0)
-    row_offset_ = setup_.interlaced && place ? static_cast<int>(regs.sdofst.fofst.get()) + 1 : 0;
+    row_offset_ = setup_.interlaced && place ? regs.sdofst.start(setup_.sdofst) : 0;
   else
-    row_offset_ += regs.sdofst.step(place, index - 1);
+    row_offset_ += regs.sdofst.step(setup_.sdofst, place, index - 1);
   row_address_ = setup_.address + static_cast<std::uint32_t>(row_offset_) * setup_.pitch;
   row_skipped_ = l.standard->active_offset() + setup_.sph;
   row_first_sample_ = l.first_sample + row_skipped_;

@@ -85,7 +85,7 @@ class Isif : public WithRegs<IsifRegs>, public BusTarget, public Bt656If {
   struct Setup {
     bool write = false, interlaced = false, fiinv = false, swap = false, invert_chroma = false;
     unsigned sph = 0, bytes = 0, first_line[2] = {}, lines = 0;
-    std::uint32_t address = 0, pitch = 0;
+    std::uint32_t address = 0, pitch = 0, sdofst = 0;
   };
   struct FieldEnd {
     std::uint64_t last_tag;

@@ -60,13 +60,15 @@ struct IsifRegs : RegBank {
     Field lofts0{*this, "LOFTS0", 9, 3, Mode::kRw, "step after an even line of field 0"};
     Field fofst{*this, "FOFST", 12, 2, Mode::kRw, "start of field 1: 1 ... 4 lines"};
     Field fiinv{*this, "FIINV", 14, 1, Mode::kRw, "1 swaps the fields' places in memory"};
-    /// Number of lines by which the address moves after line i of a field: codes 0 to 3 mean +1 to
-    /// +4, codes 4 to 7 mean -1 to -4.
-    int step(bool field, unsigned line) const {
-      const unsigned code =
-          field ? (line & 1 ? lofts3 : lofts2).get() : (line & 1 ? lofts1 : lofts0).get();
+    /// Number of lines by which the address moves after line i of a field, by a word that was latched: codes 0 to 3
+    /// mean +1 to +4, codes 4 to 7 mean -1 to -4.
+    int step(std::uint32_t word, bool field, unsigned line) const {
+      const Field& f = field ? (line & 1 ? lofts3 : lofts2) : (line & 1 ? lofts1 : lofts0);
+      const unsigned code = (word & f.mask()) >> f.lsb();
       return code < 4 ? static_cast<int>(code) + 1 : 3 - static_cast<int>(code);
     }
+    /// Rows from the start of the buffer to the first one of the second field.
+    int start(std::uint32_t word) const { return static_cast<int>((word & fofst.mask()) >> fofst.lsb()) + 1; }
   } sdofst{*this, "SDOFST", 0x38, "line offsets in memory"};
 
   struct Cadu : Reg {

@@ -97,7 +97,10 @@ struct OsdRegs : RegBank {
   Reg extmode{*this, "EXTMODE", 0xE4, Mode::kRw, "expansion", 0, Modelled{0}};
   struct Miscctl : Reg {
     using Reg::Reg;
-    Field low{*this, "LOW", 0, 6, Mode::kRw, "3 busy, 4 DMA; kept"};
+    Field low{*this, "LOW", 0, 3, Mode::kRw, "kept"};
+    // Family: SPRUE37 (DM644x), which has it read-only; software waits for 0 before it writes a colour.
+    Field cpbsy{*this, "CPBSY", 3, 1, Mode::kRo, "a colour table is being written: never, as there is none here"};
+    Field middle0{*this, "DMA", 4, 2, Mode::kRw, "kept"};
     Field dmang{*this, "DMANG", 6, 1, Mode::kW1c, "data of the display came too late (vpss.miscctl_6)"};
     Field rgben{*this, "RGBEN", 7, 1, Mode::kRw, "RGB in a video window", Modelled{0}};
     Field middle{*this, "MIDDLE", 8, 6, Mode::kRw, "12 DM365 mode; kept"};

@@ -1,4 +1,9 @@
 // What controls the ISIF: enables, gates, interrupts, double-buffered registers, frames and their ends.
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tb/video/capture_bench.h"
 
 namespace fovea::video {
@@ -249,6 +254,49 @@ TEST_F(CaptureTest, WithVdlcANewAddressTakesEffectAtTheNextLine) {
   EXPECT_EQ(b.memory.at(kBuffer + 4 * kRowBytes)[0], pattern(4, 0));
   EXPECT_EQ(b.memory.at(kOther + 6 * kRowBytes)[0], pattern(6, 0));
   EXPECT_EQ(b.memory.at(kBuffer + 6 * kRowBytes)[0], 0xEE);
+}
+
+/// Every register, written in the middle of the first field with VDLC = 0: this field goes on as it was, and the next
+/// one has the new settings. Only SYNCEN acts at once, as it ends the capture. Which registers wait: family, SPRUF71
+/// (DM355), where the settings of the picture are latched by VD; all of them are taken to be (assumed).
+TEST_F(CaptureTest, EachSettingWaitsForTheNextVd) {
+  const std::set<std::string> taken{"MODESET", "SPH",  "LNH",  "SLV0",     "SLV1",   "LNV",
+                                    "HSIZE",   "CADU", "CADL", "REC656IF", "CCDCFG", "SDOFST"};
+  // Two swaps of all, or two inversions, would be none, and VDLC ends the waiting.
+  const std::uint32_t ycinswp = 1u << 4;
+  const auto bursts = [&](const Reg* written) {
+    SetUp();
+    enable();
+    run_until(line_time(6) + kPsPerUs);
+    const std::size_t before = b.memory.log.size();
+    if (written) {
+      const std::uint32_t flip = written->writable() & (written->name() == "CCDCFG" ? ycinswp : ~0u);
+      b.regs.write(written->offset(), b.regs.read(written->offset()) ^ flip);
+    }
+    run_until(line_time(13));  // past the last row of the first field
+    const std::size_t field = b.memory.log.size();
+    EXPECT_EQ(before, 3u * 2) << "three rows of two bursts";
+    const std::vector<std::uint8_t> first(b.memory.at(kBuffer), b.memory.at(kBuffer) + kRows * kRowBytes);
+    run_until(line_time(24));
+    std::vector<std::uint32_t> now, next;
+    for (std::size_t n = 0; n < b.memory.log.size(); ++n)
+      (n < field ? now : next).push_back(b.memory.log[n].address << 4 | b.memory.log[n].bytes);
+    for (std::uint8_t byte : first) now.push_back(byte);
+    for (unsigned n = 0; n < kRows * kRowBytes; ++n) next.push_back(b.memory.at(kBuffer)[n]);
+    if (written) b.regs.write(written->offset(), written->reset_value());
+    return std::pair(now, next);
+  };
+  const auto usual = bursts(nullptr);
+  unsigned checked = 0;
+  for (const Reg* r : b.isif.bank().regs()) {
+    if (r->name() == "SYNCEN" || !r->writable()) continue;
+    const auto [now, next] = bursts(r);
+    EXPECT_EQ(now, usual.first) << r->name() << " acts in the middle of a field";
+    // The first line of a first field is no matter of the second one.
+    EXPECT_EQ(next != usual.second, taken.contains(r->name()) && r->name() != "SLV0") << r->name();
+    ++checked;
+  }
+  EXPECT_EQ(checked, b.isif.bank().regs().size() - 1);
 }
 
 TEST_F(CaptureTest, ObserverSeesFramesWithIndexTimesAndAddress) {

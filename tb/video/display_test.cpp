@@ -1,6 +1,11 @@
 // OSD, VENC and display: the display gets the contents of memory at the right time.
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tb/video/display_bench.h"
 
 namespace fovea::video {
@@ -115,6 +120,45 @@ TEST_F(DisplayTest, NewAddressTakesEffectAtTheNextFieldStart) {
   ASSERT_GE(b.latches.size(), 2u);
   EXPECT_EQ(b.latches[0].address, kBuffer);
   EXPECT_EQ(b.latches[1].address, kOther);
+}
+
+/// Every register of the OSD, written in the middle of a field's picture: this field stays as it was, and the next one
+/// has the new settings (assumed: Linux davinci_vpbe writes them at any time and counts on the next field).
+TEST_F(DisplayTest, EachSettingOfTheWindowWaitsForTheNextField) {
+  const std::set<std::string> taken{"MODE",   "VIDWINMD",  "VIDWIN0OFST", "VIDWINADH", "VIDWIN0ADL", "BASEPX",
+                                    "BASEPY", "VIDWIN0XP", "VIDWIN0YP",   "VIDWIN0XL", "VIDWIN0YL"};
+  const auto shown = [&](const Reg* written) {
+    SetUp();
+    b.venc_regs.write(VMOD, kOn);
+    run_for(kField / 2);
+    if (written) {
+      // Bit 26 of an address must be 1; a larger window would be cut to the picture.
+      const std::string& name = written->name();
+      const std::uint32_t flip = name == "VIDWIN0OFST" ? 0x1FFu
+                                 : name == "VIDWIN0XL" ? 0x40u
+                                 : name == "VIDWIN0YL" ? 0x30u
+                                                       : ~0u;
+      b.osd_regs.write(written->offset(), b.osd_regs.read(written->offset()) ^ (written->writable() & flip));
+    }
+    while (b.frames.empty()) run_for(kPsPerMs);
+    std::pair<std::vector<std::uint8_t>, std::vector<std::uint8_t>> rows;
+    for (unsigned r = 0; r < kRows; ++r) {
+      auto& to = r % 2 ? rows.second : rows.first;
+      const std::uint8_t* from = b.frames[0].picture.row(r);
+      to.insert(to.end(), from, from + kPitch);
+    }
+    if (written) b.osd_regs.write(written->offset(), written->reset_value());
+    return rows;
+  };
+  const auto usual = shown(nullptr);
+  unsigned checked = 0;
+  for (const Reg* r : b.osd.bank().regs()) {
+    const auto [now, next] = shown(r);
+    EXPECT_TRUE(now == usual.first) << r->name() << " acts in the middle of a field";
+    EXPECT_EQ(next != usual.second, taken.contains(r->name())) << r->name();
+    ++checked;
+  }
+  EXPECT_GE(checked, 40u);
 }
 
 TEST_F(DisplayTest, WithFrameLatchTheWholeFrameKeepsItsAddress) {
