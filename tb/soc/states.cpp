@@ -78,7 +78,7 @@ std::vector<Write> long_requests(unsigned n) {
 
 void append(std::vector<Write>& to, std::initializer_list<Write> more) { to.insert(to.end(), more); }
 
-/// A transfer controller at work, with an error that nobody has cleared: a request of channel 0 with constant
+/// A transfer controller at work, with an error that software has not cleared: a request of channel 0 with constant
 /// addressing and an address that is no multiple of 32.
 State tc_busy(unsigned n) {
   static constexpr const char* kBlocks[] = {"edma_tc0", "edma_tc1", "edma_tc2", "edma_tc3"};
