@@ -365,7 +365,10 @@ class Writer {
     constexpr Word kWrites[] = {0xEE050F10u, 0xEE050F30u, 0xEE060F10u, 0xEE070F9Au,
                                 0xEE070F15u, 0xEE080F17u, 0xEE0D0F30u};
     if (pick(2)) return maybe(kReads[pick(7)] | r << 12);
-    maybe(kWrites[pick(7)] | r << 12);
+    const Word write = kWrites[pick(7)];
+    // Bit 8 of a fault status reads as zero on the chip (ARM DDI 0198D 2.3.7); QEMU keeps it.
+    if (write == 0xEE050F10u || write == 0xEE050F30u) put(0xE3C00C01u | r << 16 | r << 12);
+    maybe(write | r << 12);
   }
 
   /// S, R, A and V; the register is cleared behind, as caches differ from run to run.

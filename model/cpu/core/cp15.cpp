@@ -9,6 +9,9 @@ constexpr std::uint32_t id(unsigned op1, unsigned crn, unsigned crm, unsigned op
   return op1 << 12 | crn << 8 | crm << 4 | op2;
 }
 
+/// Bit 8 of a fault status register reads as zero, and writes to it are ignored (ARM DDI 0198D 2.3.7).
+constexpr std::uint32_t kFaultStatusZero = 1u << 8;
+
 /// Size field of the cache type register: write-back, lockdown format C (ARM DDI 0198D 2.3).
 std::uint32_t size_field(std::uint64_t bytes) {
   unsigned code = 0;
@@ -117,8 +120,8 @@ bool Core::cp15_write(std::uint32_t reg, std::uint32_t v) {
       return true;
     case id(0, 2, 0, 0): system_.ttbr = v; return true;
     case id(0, 3, 0, 0): system_.dacr = v; forget_translations(); return true;
-    case id(0, 5, 0, 0): system_.dfsr = v; return true;
-    case id(0, 5, 0, 1): system_.ifsr = v; return true;
+    case id(0, 5, 0, 0): system_.dfsr = v & ~kFaultStatusZero; return true;
+    case id(0, 5, 0, 1): system_.ifsr = v & ~kFaultStatusZero; return true;
     case id(0, 6, 0, 0): system_.far = v; return true;
     case id(0, 9, 0, 0): system_.dlock = v & 15u; return true;
     case id(0, 9, 0, 1): system_.ilock = v & 15u; return true;
