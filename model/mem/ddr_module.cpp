@@ -1,9 +1,24 @@
 #include "model/mem/ddr_module.h"
 
+#include <cstdio>
+
 #include "model/common/timer.h"
 #include "model/mem/ddr_decode.h"
 
 namespace fovea::mem {
+namespace {
+
+/// What BOOTUNLOCK opens: the type of the SDRAM (SPRUFI2), and the settings of drive, strobe, DLL and termination that
+/// go to the part with it (family: SPRUH82C 14.4.2).
+std::uint32_t type_bits(const DdrRegs::Sdbcr& r) {
+  std::uint32_t mask = 0;
+  for (const Field* f : {&r.sdramen, &r.ddren, &r.ddr2en, &r.mddren, &r.ddrdrive, &r.ddrdrive1, &r.ddrdllen, &r.ddqs,
+                         &r.term})
+    mask |= f->mask();
+  return mask;
+}
+
+}  // namespace
 
 DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params, memsys::MemorySystem& memory)
     : BusTarget(name, regs),
@@ -12,7 +27,8 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params, mems
       check_(params, memory.controller(), diagnostics()),
       sdtimr_(regs.sdtimr.get()),
       sdtimr2_(regs.sdtimr2.get()),
-      cl_(regs.sdbcr.cl.get()) {
+      cl_(regs.sdbcr.cl.get()),
+      type_(regs.sdbcr.get() & type_bits(regs.sdbcr)) {
   add_power_gate(enabled);
   SC_HAS_PROCESS(DdrModule);
   memory_.set_admission(*this);
@@ -25,6 +41,7 @@ DdrModule::DdrModule(sc_core::sc_module_name name, const DdrParams& params, mems
   for (Reg* r : regs.regs()) r->on_write([this](std::uint32_t) { reconfigure(); });
   regs.sdbcr.on_write([this](std::uint32_t) {
     keep_latency_while_locked();
+    keep_type_while_locked();
     reconfigure();
   });
   regs.sdtimr.on_write([this](std::uint32_t) { keep_while_locked(regs.sdtimr, sdtimr_); });
@@ -39,7 +56,9 @@ void DdrModule::on_reset(ResetKind) {
   sdtimr_ = regs.sdtimr.get();
   sdtimr2_ = regs.sdtimr2.get();
   cl_ = regs.sdbcr.cl.get();
-  unlocked_ = timed_ = false;
+  type_ = regs.sdbcr.get() & type_bits(regs.sdbcr);
+  lost_ = 0;
+  unlocked_ = timed_ = boot_unlocked_ = false;
   in_reset_ = true;
   reconfigure();
   check_.restart();
@@ -96,6 +115,25 @@ void DdrModule::keep_latency_while_locked() {
   unlocked_ = unlocks;
 }
 
+/// The type bits are taken if BOOTUNLOCK was set before the write: the manuals' order is a write of BOOTUNLOCK, then
+/// one of 0 to it with the values. TI's boot loader writes them first without, and in this order behind; so what a
+/// write loses is told with the first access to the SDRAM, if the last write has lost it.
+void DdrModule::keep_type_while_locked() {
+  auto& r = regs.sdbcr;
+  const std::uint32_t mask = type_bits(r), wanted = r.get() & mask;
+  lost_ = boot_unlocked_ ? 0 : wanted ^ type_;
+  if (boot_unlocked_) type_ = wanted;
+  r.set((r.get() & ~mask) | type_);
+  boot_unlocked_ = r.bootunlock.get();
+}
+
+void DdrModule::warn_of_lost_type() const {
+  char text[96];
+  std::snprintf(text, sizeof text,
+                "SDBCR type bits 0x%08x written without BOOTUNLOCK in the write before: write lost", lost_);
+  diagnostics().guest(text);
+}
+
 /// SDBCR is written with TIMUNLOCK to load CL and the timing; the write that locks it again ends
 /// the initialisation (UBL's order). The controller keeps programmed values, whatever the part
 /// would like.
@@ -129,6 +167,7 @@ bool DdrModule::admit(std::uint32_t offset, unsigned bytes) {
     examined_ = true;
     update_open();
     check_.begin();
+    if (lost_) warn_of_lost_type();
     for (const std::string& line : invalid_register_values(regs, params_)) diagnostics().guest(line);
     check_.warn(programmed(), ddr_clk.read());
   }

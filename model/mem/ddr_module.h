@@ -50,6 +50,8 @@ class DdrModule final : public WithRegs<DdrRegs>, public BusTarget, private mems
   void reconfigure();
   void keep_while_locked(Reg& timing, std::uint32_t& kept);
   void keep_latency_while_locked();
+  void keep_type_while_locked();
+  void warn_of_lost_type() const;
   void note_initialised();
   void update_open() { memory_.set_open(ready_ && enabled_ && examined_); }
   bool admit(std::uint32_t offset, unsigned bytes) override;
@@ -64,6 +66,9 @@ class DdrModule final : public WithRegs<DdrRegs>, public BusTarget, private mems
   std::uint32_t sdtimr_, sdtimr2_;  // as last written with TIMUNLOCK
   std::uint32_t cl_;                // SDBCR.CL as last taken
   bool unlocked_ = false;           // the last write of SDBCR opened it
+  std::uint32_t type_;              // SDBCR's bits that BOOTUNLOCK opens, as last taken
+  std::uint32_t lost_ = 0;          // those of them that the last write did not change, although it would have
+  bool boot_unlocked_ = false;      // the last write of SDBCR has set BOOTUNLOCK
   bool in_reset_ = false;
 };
 

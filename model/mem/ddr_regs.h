@@ -23,7 +23,7 @@ struct DdrRegs : RegBank {
     Field ddr2en{*this, "DDR2EN", 20, 1, Mode::kRw, "DDR2"};
     Field ddrdllen{*this, "DDRDLL_DIS", 21, 1, Mode::kRw, "DLL; no effect here"};
     Field ddqs{*this, "DDQS", 22, 1, Mode::kRw, "differential DQS; no effect here"};
-    Field bootunlock{*this, "BOOTUNLOCK", 23, 1, Mode::kRw, "opens CL; in the chip the type bits too"};
+    Field bootunlock{*this, "BOOTUNLOCK", 23, 1, Mode::kRw, "opens CL, and with the next write the type bits"};
     Field ddrdrive1{*this, "DDRDRIVE1", 24, 1, Mode::kRw, "drive strength; no effect here"};
     Field mddren{*this, "MSDRAMEN", 25, 1, Mode::kRw, "mobile DDR"};
     Field ibank_pos{*this, "IBANK_POS", 26, 1, Mode::kRw, "1: bank address on top of the row"};

@@ -64,6 +64,7 @@ struct Bench {
       done.push_back({kernel_time(), c.first, c.last, c.error});
     };
     ddr.regs.write(0x0C, 4, 1895);
+    ddr.regs.write(0x08, 4, 0x00D34A32);  // BOOTUNLOCK, for the type of the part
     ddr.regs.write(0x08, 4, 0x00534A32);
   }
 };
@@ -299,9 +300,9 @@ TEST_F(ModuleTest, SdramIsInitialisedWhenItsTimingIsLockedAndPowerAndClockAreOn)
   EXPECT_FALSE(initialised()) << "clock";
   b.ddr_clk.write(kFast);
   EXPECT_TRUE(initialised());
-  r.write(0x08, 4, 0x0052'4A32);
+  for (const std::uint32_t word : {0x00D3'4A32u, 0x0052'4A32u}) r.write(0x08, 4, word);
   EXPECT_FALSE(initialised()) << "SDRAMEN";
-  r.write(0x08, 4, 0x0053'4A32);
+  for (const std::uint32_t word : {0x00D2'4A32u, 0x0053'4A32u}) r.write(0x08, 4, word);
   EXPECT_TRUE(initialised());
 }
 
@@ -337,7 +338,7 @@ TEST_F(ModuleTest, ProgrammingIsLookedAtOnceWithTheFirstAccessAfterAChange) {
 TEST_F(ModuleTest, SdramThatIsSwitchedOffAnswersWithABusErrorUntilItIsOnAgain) {
   b.diagnostics.clear();
   const auto read_fails = [&](std::uint32_t sdbcr) {
-    b.ddr.regs.write(0x08, 4, sdbcr);
+    for (const std::uint32_t word : {sdbcr | 1u << 23, sdbcr}) b.ddr.regs.write(0x08, 4, word);
     b.done.clear();
     b.master.read(kDdr, 64);
     run_for(5 * kPsPerUs);
@@ -394,6 +395,40 @@ TEST_F(ModuleTest, LatencyIsWrittenWithAnUnlockBitOnly) {
   EXPECT_EQ(latency_after(0x0053'4A32), 5u);
   EXPECT_EQ(latency_after(0x0053'4A32), 5u) << "the same again is no change";
   EXPECT_EQ(lost(), 2u);
+}
+
+// The manuals' order is a write of BOOTUNLOCK and then the values with 0 in it; TI's boot loader writes them locked
+// first.
+TEST_F(ModuleTest, TypeIsWrittenBehindBootunlockOnly) {
+  b.diagnostics.clear();
+  auto& r = b.ddr.regs;
+  const auto after = [&](std::uint32_t sdbcr) {
+    r.write(0x08, 4, sdbcr);
+    return r.sdbcr.get();
+  };
+  const auto told = [&](const char* text) {
+    b.master.read(kDdr, 64);
+    run_for(5 * kPsPerUs);
+    return warnings(text);
+  };
+  constexpr std::uint32_t kAll = 0x1B7F'0000, kIs = 0x0053'0000;  // what it opens; as the bench leaves it
+  constexpr const char* kLost = "written without BOOTUNLOCK in the write before: write lost";
+  EXPECT_EQ(after(0x0053'4A32 ^ kAll), 0x0053'4A32u) << "locked";
+  EXPECT_EQ(told(kLost), 1u);
+  EXPECT_EQ(warnings("SDBCR type bits 0x1b7f0000 written without"), 1u);
+  EXPECT_EQ(after((0x00D3'4A32 ^ kAll)), 0x00D3'4A32u) << "the write that unlocks it";
+  EXPECT_EQ(after(0x0053'4A32 ^ kAll), (kIs ^ kAll) | 0x4A32u);
+  EXPECT_EQ(after(0x0053'4A32), (kIs ^ kAll) | 0x4A32u) << "locked again";
+  r.write(0x08, 4, 0x00D3'4A32 ^ kAll);
+  EXPECT_EQ(after(0x0053'4A32), 0x0053'4A32u);
+  EXPECT_EQ(told(kLost), 1u) << "nothing is lost in the end, as with the boot loader";
+  // One byte at a time.
+  r.write(0x0A, 1, 0xD3);
+  r.write(0x0A, 1, 0x13);
+  EXPECT_EQ(r.sdbcr.get(), 0x0013'4A32u);
+  r.write(0x0A, 1, 0x53);
+  EXPECT_EQ(r.sdbcr.get(), 0x0013'4A32u);
+  for (const std::uint32_t word : {0x00D3'4A32u, 0x0053'4A32u}) r.write(0x08, 4, word);
 }
 
 // LPMODEN, then MCLKSTOPEN: PHYRDY goes low; an access brings the clock back.

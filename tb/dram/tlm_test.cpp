@@ -109,6 +109,7 @@ struct Board {
     direct.socket.bind(direct_slave.memory);
     direct_slave.socket.bind(direct_target.socket);
     ddr.regs.write(0x0C, 4, 1560);        // a refresh each 7.8 us
+    ddr.regs.write(0x08, 4, 0x00D34A32);
     ddr.regs.write(0x08, 4, 0x00534A32);  // as the boot loader ends the initialisation
   }
   void job(std::uint64_t ns, tlm::tlm_command command, std::uint64_t address, unsigned bytes) {

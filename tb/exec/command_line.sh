@@ -44,6 +44,8 @@ expect not_an_elf 2 'ELF' -- run "$programs/flat_arm.bin"
 expect bad_root 2 'folder' -- run --root "$out/nowhere" "$fails"
 expect bad_key 2 'ddr.part' -- run -s ddr.prat=x "$fails"
 expect bad_cache 2 'powers of two' -- run -s cpu.icache.size=5000B "$fails"
+# Exec programs the controller for DDR2; the core alone has no SDRAM, of which the part gives the size only.
+expect mobile_memory 2 'ddr.part' 'firmware.elf' 'fovea replay TRACE' -- run -s ddr.part=mt46h32m16lf "$fails"
 expect ram_base 5 '^flat$' -- run -s exec.ram_base=0x40000000 --load 0x40100000 --entry 0x40100000 \
   "$programs/flat_arm.bin"
 expect bad_ram_base 2 'exec.ram_base' 'auto' -- run -s exec.ram_base=0x1000 "$fails"

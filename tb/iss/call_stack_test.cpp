@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <random>
 #include <set>
 #include <span>
 #include <vector>
@@ -416,11 +417,21 @@ TEST(CallStackTest, NestedInterrupts) {
 struct Watched final : CallStacks::Watcher {
   std::map<std::vector<std::uint32_t>, std::uint64_t> clocks;
   std::optional<std::uint64_t> last;
-  void ran(std::span<const std::uint32_t> functions, std::uint64_t begin, std::uint64_t end) override {
+  std::vector<std::uint32_t> copy;  ///< what is active, by what has changed
+  std::uint64_t changed = 0;
+  void ran(std::span<const std::uint32_t> functions, std::size_t same, std::uint64_t begin,
+           std::uint64_t end) override {
+    if (!last) same = 0;
+    ASSERT_LE(same, copy.size());
+    ASSERT_LE(same, functions.size());
+    copy.resize(same);
+    copy.insert(copy.end(), functions.begin() + static_cast<std::ptrdiff_t>(same), functions.end());
+    changed += functions.size() - same;
+    if (functions.size() < 100) EXPECT_EQ(copy, std::vector<std::uint32_t>(functions.begin(), functions.end()));
     EXPECT_EQ(begin, last.value_or(begin));
     EXPECT_LE(begin, end);
     last = end;
-    clocks[{functions.begin(), functions.end()}] += end - begin;
+    if (functions.size() < 100) clocks[{functions.begin(), functions.end()}] += end - begin;
   }
 };
 
@@ -457,6 +468,49 @@ TEST_F(StacksByHandTest, AWatcherSeesCallersAndWhatAnExceptionInterrupts) {
   // Also where nothing is counted.
   stacks.call(60, 0x110, 0x200, 0x114, 0x1000);
   EXPECT_EQ(watched.clocks.at({0x100}), 35u);
+}
+
+// Exceptions of exceptions, calls and returns at random: what has changed, added up, is what is active.
+TEST_F(StacksByHandTest, WhatHasChangedAddsUpToWhatIsActive) {
+  std::mt19937 random(3);
+  struct Place {
+    std::uint32_t back, sp;
+    bool exception;
+  };
+  std::vector<Place> places;
+  std::uint32_t sp = 0x8000'0000;
+  std::uint64_t clock = 20;
+  for (unsigned n = 0; n < 20'000; ++n) {
+    clock += random() % 5;
+    const std::uint32_t from = 0x100 * (1 + random() % 3) + 4 * (random() % 32);
+    const unsigned what = places.size() > 40 ? 2 : random() % (places.empty() ? 2 : 4);
+    if (what == 0) {
+      places.push_back({from + 4, sp, false});
+      stacks.call(clock, from, 0x100 * (1 + random() % 3), from + 4, sp);
+      sp -= 16;
+    } else if (what == 1) {
+      places.push_back({from, sp, true});
+      stacks.exception(clock, 0x100 * (1 + random() % 3), from, sp);
+    } else {
+      const Place p = places.back();
+      places.pop_back();
+      sp = p.sp;
+      p.exception ? stacks.exception_return(clock, p.back, sp) : stacks.jump(clock, p.back, sp);
+    }
+  }
+  EXPECT_GT(watched.clocks.size(), 1'000u);
+}
+
+// A recursion of 200,000 activations and back: a watcher is told of each once, not of all at each branch.
+TEST_F(StacksByHandTest, AWatcherOfADeepRecursionIsToldOfWhatChanges) {
+  constexpr std::uint32_t kDeep = 200'000, kBase = 0x8000'0000;
+  for (std::uint32_t n = 0; n < kDeep; ++n)
+    stacks.call(30 + n, n ? 0x210 : 0x110, 0x200, n ? 0x214 : 0x114, kBase - 4 * n);
+  for (std::uint32_t n = kDeep; n-- > 0;) stacks.jump(30 + 2 * kDeep - n, n ? 0x214 : 0x114, kBase - 4 * n);
+  stacks.count(31 + 2 * kDeep, false);
+  EXPECT_EQ(watched.changed, 1u + kDeep);
+  EXPECT_EQ(watched.copy, std::vector<std::uint32_t>{0x100});
+  EXPECT_EQ(watched.clocks.at({0x100}), 20u + 1u);
 }
 
 // main runs from 10 to 30 and from 45 on, 0x200 in between; the section changes at 35 and at 50, and 60 is the end.

@@ -36,14 +36,31 @@ std::vector<Move> edma_moves(std::initializer_list<const char*> prefixes) {
 
 State as_declared(const char* block) { return {block, "after a reset", kFields}; }
 
+/// SDRAM's type, drive, strobe, DLL and termination.
+constexpr std::uint32_t kSdramType = 0x1B7F'0000;
+
+/// The type bits are taken while BOOTUNLOCK stays set.
+State type_of_sdram() {
+  State s{"ddr", "type unlocked", "SPRUFI2 (type), SPRUH82C (family) 14.4.2 SDCR: written with BOOTUNLOCK set before"};
+  s.enter = {{"SDBCR", 0x0085'3832}};
+  s.signs = {{"SDBCR", 0x0080'8000, 0x0080'0000}};
+  s.ones = {{"SDBCR", 0x0080'0000}};
+  s.zeros = {{"SDBCR", 0x8000}};
+  s.locked = {{"SDTIMR", ~0u}, {"SDTIMR2", ~0u}};
+  return s;
+}
+
 State timing_of_sdram(bool unlocked) {
   State s{"ddr", unlocked ? "timing unlocked" : "timing locked",
           "family: SPRUEM4A 4.2, 4.4, 4.5: SDTIMR, SDTIMR2 and CL are taken with SDBCR.TIMUNLOCK only"};
   if (unlocked) {
     s.enter = {{"SDBCR", 0x0005'B832}};
+    s.signs = {{"SDBCR", 0x0080'8000, 0x8000}};
+    s.locked = {{"SDBCR", kSdramType}};
+    s.zeros = {{"SDBCR", 0x0080'0000}};
     s.ones = {{"SDBCR", 0x8000}};
   } else {
-    s.locked = {{"SDTIMR", ~0u}, {"SDTIMR2", ~0u}, {"SDBCR", 0x0E00}};
+    s.locked = {{"SDTIMR", ~0u}, {"SDTIMR2", ~0u}, {"SDBCR", 0x0E00 | kSdramType}};
     s.warned = {{"SDTIMR", ~0u, "SDTIMR written without SDBCR TIMUNLOCK: write lost"},
                 {"SDTIMR2", 0x7FFF'FFFF, "SDTIMR2 written without SDBCR TIMUNLOCK: write lost"},
                 {"SDBCR", 0x0E00, "SDBCR CL written without TIMUNLOCK or BOOTUNLOCK: write lost"}};
@@ -327,7 +344,7 @@ State engine(bool busy) {
 
 const std::vector<State>& states() {
   static const std::vector<State> all = {timing_of_sdram(false),
-                                         timing_of_sdram(true),
+                                         timing_of_sdram(true), type_of_sdram(),
                                          edma(true),
                                          edma(false),
                                          edma_pending(),

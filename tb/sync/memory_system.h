@@ -11,6 +11,7 @@ namespace fovea::sync {
 
 /// The registers as TI's boot loader (UBL) leaves them for 243 MHz.
 inline void start_sdram(mem::DdrModule& ddr) {
+  ddr.regs.write(0x08, 4, 0x00D3CA32);  // BOOTUNLOCK
   ddr.regs.write(0x08, 4, 0x0053CA32);  // TIMUNLOCK
   ddr.regs.write(0x10, 4, 30u << 25 | 4u << 22 | 4u << 19 | 3u << 16 | 10u << 11 | 15u << 6 |
                               2u << 3 | 2u);

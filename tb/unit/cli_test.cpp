@@ -346,7 +346,8 @@ TEST_F(CliTest, ConfigNamesWhatMadeIt) {
   // SHA-256 of "abc", FIPS 180-2, appendix B.1.
   dir.write("abc", "abc");
   EXPECT_EQ(sha256_of(dir / "abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(sha256_of(dir / "none"), "");
+  EXPECT_THAT(test::user_error([&] { sha256_of(dir / "none"); }), HasSubstr("none' cannot be read: No such file"));
+  EXPECT_THAT(test::user_error([] { sha256_of("/proc/self/mem"); }), HasSubstr("cannot be read: Input/output error"));
   EXPECT_EQ(sha256_of("/dev/null"), "") << "not a regular file";
   ASSERT_EQ(run({"-s", "run.file=" + (dir / "abc").string()}), 0) << err.str();
   auto config = json::parse(read_text(result / "config.json"));

@@ -31,6 +31,9 @@ case $what in
   late) until [ -e "$LOG.go" ]; do sleep 0.01; done ;;
   sleep) trap 'exit 143' TERM; while :; do sleep 0.02; done ;;
   stubborn) trap '' TERM; while :; do sleep 0.02; done ;;
+  hang) exec sleep 1000 ;;
+  compute) n=0; until [ -e "$LOG.go" ]; do n=$((n + 1)); done ;;
+  write) for n in 1 2 3 4 5 6 7 8 9 10 11 12; do echo "$n"; sleep 0.1; done ;;
 esac
 mkdir -p "$dir"
 printf '{"complete": true, "a": {"value": 2.5, "unit": "s"}, "b": {"value": null, "unit": "1"}}' > "$dir/stats.json"
@@ -66,7 +69,8 @@ class RunnerTest : public ::testing::Test {
     complete_ = runner.run();
     return results;
   }
-  std::string log() const { return read_text(dir_ / "log"); }
+  std::string log() const { return read_text(log_file()); }
+  std::string log_file() const { return dir_ / "log"; }
   TempDir dir_;
   std::filesystem::path script_;
   std::atomic<bool> stop_{false};
@@ -284,6 +288,39 @@ TEST_F(RunnerTest, TheTimeLeftCountsWhatIsKnownAndWhatMayFollow) {
   runner.add(point("d"), [](const PointResult&) {});
   EXPECT_TRUE(runner.run());
   EXPECT_THAT(progress_.str(), HasSubstr("; at most 4 to go, ETA "));
+}
+
+/// A child that does nothing at all is ended, with its name; one that computes or writes is not, however long it takes.
+TEST_F(RunnerTest, AChildWithoutASignOfLifeHangs) {
+  PointStore store(dir_ / "store");
+  RunnerOptions o = options();
+  o.silence = std::chrono::milliseconds(400);
+  const auto begin = std::chrono::steady_clock::now();
+  Runner runner(store, o);
+  bool other = false;
+  runner.add(point("hang"), [](const PointResult&) { ADD_FAILURE(); });
+  runner.add(point("a"), [&](const PointResult&) { other = true; });
+  EXPECT_THAT(user_error([&] { runner.run(); }),
+              HasSubstr("the point 'hang' hangs: for 0.4 s it has neither used the processor nor written anything"));
+  EXPECT_TRUE(other) << "its result is kept";
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
+TEST_F(RunnerTest, AChildThatComputesOrWritesDoesNotHang) {
+  PointStore store(dir_ / "store");
+  RunnerOptions o = options();
+  o.silence = std::chrono::milliseconds(400);
+  Runner runner(store, o);
+  unsigned ended = 0;
+  for (const char* p : {"compute", "write"})
+    runner.add(point(p), [&](const PointResult& r) { ended += r.status == 0; });
+  std::thread go([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1'500));
+    std::ofstream(log_file() + ".go");
+  });
+  EXPECT_TRUE(runner.run());
+  go.join();
+  EXPECT_EQ(ended, 2u);
 }
 
 TEST_F(RunnerTest, WrongPrograms) {

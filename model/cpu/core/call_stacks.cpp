@@ -29,22 +29,39 @@ bool CallStacks::same_function(std::uint32_t a, std::uint32_t b) const {
 std::uint32_t CallStacks::child(std::uint32_t node, std::uint32_t function) {
   const auto [place, added] =
       children_.try_emplace(pair(node, function), static_cast<std::uint32_t>(nodes_.size()));
-  if (added) nodes_.push_back({node, function, 0});
+  if (added) nodes_.push_back({node, function, 0, nodes_[node].depth + 1});
   return place->second;
 }
 
-/// The functions of a path, outermost first.
-void CallStacks::append(std::uint32_t node) {
-  const std::size_t at = active_.size();
-  for (; node; node = nodes_[node].parent) active_.push_back(nodes_[node].function);
-  std::reverse(active_.begin() + static_cast<std::ptrdiff_t>(at), active_.end());
+/// Makes the functions of a path those that are active from position `at` on, and only looks at those that were others:
+/// a node that is at its place there has its whole path below it. @return the first position that was changed
+std::size_t CallStacks::show(std::uint32_t node, std::size_t at) {
+  std::size_t k = at + nodes_[node].depth;
+  if (active_.size() < k) {
+    active_.resize(k);
+    active_nodes_.resize(k);  // node 0 is at no place
+  }
+  for (; k > at && active_nodes_[k - 1] != node; --k) {
+    active_[k - 1] = nodes_[node].function;
+    active_nodes_[k - 1] = node;
+    node = nodes_[node].parent;
+  }
+  return k;
 }
 
 void CallStacks::tell(std::uint64_t cycle) {
-  active_.clear();
-  for (const std::size_t k : interrupted_) append(stacks_[k].node);
-  append(stacks_[current_].node);
-  watchers_.each([&](Watcher* w) { w->ran(active_, last_, cycle); });
+  std::size_t size = 0, same = active_.size();
+  const auto add = [&](std::uint32_t node) {
+    const std::size_t end = size + nodes_[node].depth, kept = show(node, size);
+    if (kept < end) same = std::min(same, kept);
+    size = end;
+  };
+  for (const std::size_t k : interrupted_) add(stacks_[k].node);
+  add(stacks_[current_].node);
+  active_.resize(size);
+  active_nodes_.resize(size);
+  same = std::min(same, size);
+  watchers_.each([&](Watcher* w) { w->ran(active_, same, last_, cycle); });
 }
 
 /// Stacks of the program before are forgotten, but not what was counted.

@@ -59,7 +59,9 @@ class CallStacks {
    public:
     virtual ~Watcher() = default;
     /// @param functions outermost first, with those that an exception has interrupted
-    virtual void ran(std::span<const std::uint32_t> functions, std::uint64_t begin, std::uint64_t end) = 0;
+    /// @param same so many of them, from the outermost one on, are those of the stretch before; more may be alike
+    virtual void ran(std::span<const std::uint32_t> functions, std::size_t same, std::uint64_t begin,
+                     std::uint64_t end) = 0;
   };
   /// Also while nothing is counted. The watcher must outlive the subscription.
   Subscription watch(Watcher& watcher) { return watchers_.add(&watcher); }
@@ -94,6 +96,7 @@ class CallStacks {
   struct Node {
     std::uint32_t parent, function;
     std::uint64_t clocks = 0;  // since the last take()
+    std::uint32_t depth = 0;   // number of functions of the path
   };
   struct Taken {
     std::size_t section;
@@ -141,7 +144,7 @@ class CallStacks {
   void take();
   template <class F>
   std::vector<Path> paths_if(F wanted) const;
-  void append(std::uint32_t node);
+  std::size_t show(std::uint32_t node, std::size_t at);
   Function function_at(std::uint32_t address) const;
   std::uint32_t child(std::uint32_t node, std::uint32_t function);
   void pop(Stack& s);
@@ -165,7 +168,7 @@ class CallStacks {
   std::size_t section_ = 0;
   std::vector<Taken> taken_;
   Observers<Watcher*> watchers_;
-  std::vector<std::uint32_t> active_;  // for it
+  std::vector<std::uint32_t> active_, active_nodes_;  // for it: the functions that it was told of, and their nodes
 };
 
 }  // namespace fovea::cpu

@@ -168,7 +168,7 @@ std::optional<ElfImage> BoardMachine::loader_of(const ElfImage& program,
   if (!request.program || std::any_of(segments.begin(), segments.end(),
                                      [](const ElfSegment& s) { return s.address < DDR_BASE; }))
     return std::nullopt;
-  refuse_mobile_memory(params_, "the boot loader of exec --board");
+  refuse_mobile_memory(params_.soc.ddr, "the boot loader of exec --board");
   return ElfImage::load(built_program("board_loader.elf"));
 }
 

@@ -316,8 +316,7 @@ void check_cameras(const board::BoardParams& params) {
 
 }  // namespace
 
-void refuse_mobile_memory(const board::BoardParams& params, std::string_view program) {
-  const auto& ddr = params.soc.ddr;
+void refuse_mobile_memory(const mem::DdrParams& ddr, std::string_view program) {
   require(!ddr.mobile(), ddr.part.key(), ddr.part(),
           fmt::format("DDR2 parts, whose times {} programs. A program of your own (firmware.elf) that programs mobile "
                       "DDR runs on it, and 'fovea replay TRACE -s {}={} -s ddr.preset=data_sheet' plays a recorded run "
@@ -335,7 +334,7 @@ void complete_params(board::BoardParams& params) {
     require(std::has_single_bit(cache->size()), cache->size.key(), cache->size.text(),
             "powers of two");
   check_loads(params);
-  if (params.firmware.elf().empty()) refuse_mobile_memory(params, "the board's own program");
+  if (params.firmware.elf().empty()) refuse_mobile_memory(params.soc.ddr, "the board's own program");
   check_digital(params);
   check_cameras(params);
   if (!params.decoder.standard.user_set())

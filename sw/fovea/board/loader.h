@@ -48,7 +48,7 @@ std::unique_ptr<video::StampedSource> camera_source(const board::BoardParams& pa
                                                     const std::atomic<bool>* stop = nullptr,
                                                     std::vector<std::string>* notes = nullptr);
 /// @throws UserError if ddr.part is mobile DDR, for which Fovea's programs, such as `program`, have no times
-void refuse_mobile_memory(const board::BoardParams& params, std::string_view program);
+void refuse_mobile_memory(const mem::DdrParams& ddr, std::string_view program);
 /// Sets keys that follow from others, unless they were set (the decoder's standard).
 void complete_params(board::BoardParams& params);
 

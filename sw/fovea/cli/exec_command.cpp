@@ -135,7 +135,7 @@ void refuse_combinations(const ExecOptions& o) {
 
 /// What ran, for config.json: the options that decide the result.
 Provenance origin_of(const ParamSet& params, const ExecOptions& o) {
-  Provenance out = provenance_of(params, {{"program", o.program}});
+  Provenance out = provenance_of(params, {}, {{"program", o.program}});
   out.command = "exec";
   out.input = std::filesystem::path(o.program).filename().string();
   out.arguments = o.arguments;

@@ -127,7 +127,7 @@ std::vector<std::string> set_replay_keys(const ReplayOptions& options, const tra
 
 /// What was replayed, for config.json: the options that decide the result.
 Provenance origin_of(const ParamSet& set, const ReplayOptions& options) {
-  Provenance out = provenance_of(set, {{"trace", options.trace}});
+  Provenance out = provenance_of(set, {}, {{"trace", options.trace}});
   out.command = "replay";
   out.input = fs::path(options.trace).filename().string();
   if (options.memory_only) out.options.push_back("--memory-only");

@@ -67,6 +67,7 @@ void ExecBoard::program_controller(Frequency ddr_clock) {
   const DdrRegisters words = ddr_registers(ddr_clock);
   auto& r = ddr.regs;
   const auto write = [&r](const Reg& reg, std::uint32_t value) { r.write(reg.offset(), 4, value); };
+  write(r.sdbcr, 0x00D3'CA32);  // BOOTUNLOCK, for the type
   write(r.sdbcr, 0x0053'CA32);  // TIMUNLOCK
   write(r.sdtimr, words.sdtimr);
   write(r.sdtimr2, words.sdtimr2);

@@ -8,6 +8,7 @@
 #include "model/common/host_time_slicer.h"
 #include "sw/fovea/board/board_debug.h"
 #include "sw/fovea/board/board_machine.h"
+#include "sw/fovea/board/loader.h"
 #include "sw/fovea/exec/exec_board.h"
 #include "sw/fovea/exec/exec_caches.h"
 #include "sw/fovea/exec/flat_machine.h"
@@ -124,6 +125,7 @@ void CoreMachine::collect_memory(std::vector<StatRow>& rows) const {
 
 Result CoreMachine::run(const Request& request) {
   const auto started = Wall::now();
+  if (!flat_) refuse_mobile_memory(ddr_, "exec");
   for (const auto* cache : {&cpu_.icache, &cpu_.dcache})
     if (!std::has_single_bit(cache->size()))
       throw UserError("key '" + cache->size.key() + "': '" + cache->size.text() +

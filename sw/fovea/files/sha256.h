@@ -5,7 +5,7 @@
 
 namespace fovea::app {
 
-/// SHA-256 in hexadecimal digits.
+/// SHA-256 in hexadecimal digits. @throws UserError if the library has no SHA-256
 std::string sha256_of_text(std::string_view text);
 
 }  // namespace fovea::app

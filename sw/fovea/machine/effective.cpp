@@ -42,10 +42,8 @@ std::string identity_of(const EffectiveRun& run, const std::string& program) {
 }
 
 std::string program_hash() {
-  static const std::string hash = [] {
-    std::error_code error;
-    return sha256_of(std::filesystem::read_symlink("/proc/self/exe", error));
-  }();
+  // The link itself: the file may have been replaced or removed meanwhile.
+  static const std::string hash = sha256_of("/proc/self/exe");
   return hash;
 }
 

@@ -7,14 +7,28 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
 
 #include "model/common/check.h"
 #include "sw/fovea/files/checked_file.h"
 
 namespace fovea::points {
 namespace {
+
+/// SIGKILL ends a process at once, unless it waits for a device.
+constexpr auto kDying = std::chrono::seconds(5);
+
+std::uint64_t size_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  return error ? 0 : bytes;
+}
 
 /// What the child does between fork and exec: only what a signal handler may do.
 [[noreturn]] void become(char* const* arguments, const char* output, const char* messages,
@@ -40,7 +54,8 @@ namespace {
 }  // namespace
 
 Child::Child(const std::vector<std::string>& arguments, const std::filesystem::path& output,
-             const std::filesystem::path& messages) {
+             const std::filesystem::path& messages)
+    : output_(output), messages_(messages) {
   std::vector<std::string> copies = arguments;  // execv() takes words that are not const
   std::vector<char*> pointers;
   for (std::string& a : copies) pointers.push_back(a.data());
@@ -56,8 +71,9 @@ Child::Child(const std::vector<std::string>& arguments, const std::filesystem::p
 Child::~Child() {
   if (ended()) return;
   kill();
-  int state = 0;
-  while (::waitpid(pid_, &state, 0) < 0 && errno == EINTR) {
+  for (const auto until = std::chrono::steady_clock::now() + kDying; std::chrono::steady_clock::now() < until;) {
+    if (ended()) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
 
@@ -70,6 +86,38 @@ std::optional<Ended> Child::ended() {
   else
     ended_ = Ended{128 + WTERMSIG(state), WTERMSIG(state)};
   return ended_;
+}
+
+/// proc(5): the name in parentheses may contain anything; then state, ten fields, and the times in clock ticks: in user
+/// and kernel mode, and those of children that were waited for.
+std::optional<std::uint64_t> Child::activity() const {
+  std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  const auto name_end = text.rfind(')');
+  if (name_end == text.npos) return std::nullopt;
+  std::istringstream fields(text.substr(name_end + 1));
+  char state = 0;
+  fields >> state;
+  std::string skipped;
+  for (unsigned n = 0; n < 10; ++n) fields >> skipped;
+  std::uint64_t sum = size_of(output_) + size_of(messages_);
+  for (unsigned n = 0; n < 4; ++n) {
+    std::uint64_t ticks = 0;
+    if (!(fields >> ticks)) return std::nullopt;
+    sum += ticks;
+  }
+  return state == 'T' || state == 't' ? std::nullopt : std::optional(sum);
+}
+
+bool Silence::too_long(const Child& child) {
+  const auto now = Clock::now();
+  if (now - looked_ < std::min<std::chrono::milliseconds>(longest_ / 8, std::chrono::seconds(1))) return false;
+  looked_ = now;
+  const auto activity = child.activity();
+  if (!activity || activity != activity_) since_ = now;
+  activity_ = activity;
+  return now - since_ > longest_;
 }
 
 void Child::ask_to_end() { signal(SIGTERM); }

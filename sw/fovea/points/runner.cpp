@@ -86,7 +86,21 @@ bool Runner::run() {
     }
     std::this_thread::sleep_for(kPause);
     collect();
+    look_for_silence();
   }
+}
+
+/// A point that hangs has no result, and the others run again with the next call.
+void Runner::look_for_silence() {
+  const auto hangs = std::find_if(running_.begin(), running_.end(),
+                                  [](Running& r) { return r.silence.too_long(*r.child); });
+  if (hangs == running_.end()) return;
+  const std::string message = fmt::format(
+      "the point '{}' hangs: for {} s it has neither used the processor nor written anything, and was ended; the same "
+      "command goes on with what is left",
+      app::one_line(hangs->known->point.label), std::chrono::duration<double>(hangs->silence.longest()).count());
+  stop_children();
+  throw UserError(message);
 }
 
 /// Takes an earlier result, or starts the program.
@@ -102,7 +116,7 @@ void Runner::start(Known& known) {
   }
   const std::filesystem::path folder = store_.begin(known.key);
   Running running{&known, nullptr, {options_.program.string(), known.point.command,
-                                    known.point.input}, Clock::now()};
+                                    known.point.input}, Clock::now(), Silence(options_.silence)};
   for (const std::string& o : known.point.options) running.command.push_back(replaced(o, folder));
   for (const std::string& s : known.point.settings)
     running.command.insert(running.command.end(), {"-s", s});

@@ -26,6 +26,8 @@ struct RunnerOptions {
   std::ostream* progress = nullptr;         ///< a line for each point that has ended
   /// How long a child may take to end after SIGTERM before it is killed.
   std::chrono::milliseconds patience{10'000};
+  /// The longest time without a sign of life of a child; then it counts as hanging.
+  std::chrono::milliseconds silence = kLongestSilence;
 };
 
 /// Takes points one after the other and calls back with each result; a callback may add more points.
@@ -41,8 +43,8 @@ class Runner {
   void add(Point point, Done done);
   /// Runs what was added and what the callbacks add. @return false: stopped by `stop`; the points
   /// that had ended by then are kept, the others run with the next call
-  /// @throws UserError if a point was ended by a signal (such as the kernel's for want of memory), or
-  /// if the program cannot be started
+  /// @throws UserError if a point was ended by a signal (such as the kernel's for want of memory), if
+  /// one hangs, or if the program cannot be started
   bool run();
 
   /// At most how many points may be added besides those that are known; for the time left.
@@ -71,10 +73,12 @@ class Runner {
     std::unique_ptr<Child> child;
     std::vector<std::string> command;
     Clock::time_point since;
+    Silence silence;
   };
 
   void start(Known& known);
   void collect();
+  void look_for_silence();
   void finish(Running& running, const Ended& ended);
   void deliver(Known& known);
   void stop_children();

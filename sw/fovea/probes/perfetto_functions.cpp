@@ -6,13 +6,13 @@
 
 namespace fovea::app {
 
-void PerfettoFunctions::ran(std::span<const std::uint32_t> functions, std::uint64_t begin,
+void PerfettoFunctions::ran(std::span<const std::uint32_t> functions, std::size_t same, std::uint64_t begin,
                             std::uint64_t end) {
   // The clock may be another one by the time of the next stretch.
   const Picoseconds at = last_ ? *last_ : time_(begin);
   last_ = time_(end);
   told_ = end;
-  std::size_t same = 0;
+  same = std::min(same, active_.size());  // the first call may come in the middle
   while (same < functions.size() && same < active_.size() && active_[same].function == functions[same]) ++same;
   if (same == functions.size() && same == active_.size()) return;
   for (; active_.size() > same; active_.pop_back()) {

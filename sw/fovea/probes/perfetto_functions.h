@@ -32,7 +32,8 @@ class PerfettoFunctions final : public cpu::CallStacks::Watcher {
   PerfettoFunctions(PerfettoFile& file, Name name, Time time, std::function<void(std::uint64_t cycle)> settle)
       : file_(file), name_(std::move(name)), time_(std::move(time)), settle_(std::move(settle)) {}
 
-  void ran(std::span<const std::uint32_t> functions, std::uint64_t begin, std::uint64_t end) override;
+  void ran(std::span<const std::uint32_t> functions, std::size_t same, std::uint64_t begin,
+           std::uint64_t end) override;
   /// What lies behind `from`, the present time, is recorded.
   void start(Picoseconds from) { from_ = from; }
   /// Writes the slices that are over by `until`. The core may be ahead of the present time; what it did

@@ -58,6 +58,8 @@ class OneRun {
     return ended_.has_value();
   }
   void ask_to_end() { child_.ask_to_end(); }
+  bool hangs() { return !ended_ && silence_.too_long(child_); }
+  const std::string& name() const { return name_; }
   int status() const { return ended_ ? ended_->status : 128; }
 
  private:
@@ -78,6 +80,7 @@ class OneRun {
   fs::path messages_;
   const app::CliContext& context_;
   points::Child child_;
+  points::Silence silence_{points::kLongestSilence};
   std::optional<points::Ended> ended_;
   std::size_t read_ = 0;
 };
@@ -90,7 +93,7 @@ std::vector<std::string> command_of(const PairRequest& request, const std::strin
   return out;
 }
 
-/// Both at once. @return the status of the first one that failed, or 0 @throws Stopped
+/// Both at once. @return the status of the first one that failed, or 0 @throws Stopped @throws UserError if one hangs
 int run_both(std::array<std::unique_ptr<OneRun>, 2>& runs, const app::CliContext& context) {
   const auto stop_both = [&] {
     for (auto& run : runs) run->ask_to_end();
@@ -110,6 +113,13 @@ int run_both(std::array<std::unique_ptr<OneRun>, 2>& runs, const app::CliContext
       stop_both();
       throw app::Stopped("stopped before both programs were run");
     }
+    for (auto& run : runs)
+      if (run->hangs()) {
+        stop_both();
+        throw UserError(fmt::format("the run of '{}' hangs: for {} s it has neither used the processor nor written "
+                                    "anything, and was ended",
+                                    run->name(), std::chrono::seconds(points::kLongestSilence.count() / 1000).count()));
+      }
     std::this_thread::sleep_for(kPause);
   }
 }

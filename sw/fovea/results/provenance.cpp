@@ -6,8 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <memory>
+
+#include "model/common/check.h"
+#include "sw/fovea/files/checked_file.h"
 
 namespace fovea::app {
 namespace {
@@ -15,6 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kModified = "-modified";
+
+[[noreturn]] void unreadable(const fs::path& file) {
+  throw UserError(fmt::format("'{}' cannot be read: {}", one_line(file.string()), std::strerror(errno)));
+}
 
 bool has_effect(const ParamBase& p) {
   return std::all_of(p.effects().begin(), p.effects().end(),
@@ -26,19 +35,23 @@ bool has_effect(const ParamBase& p) {
 std::string sha256_of(const fs::path& file) {
   std::error_code error;
   // Reading a pipe would consume its contents or block for ever.
-  if (!fs::is_regular_file(file, error)) return "";
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error)) return "";
   [[maybe_unused]] static const char* const initialised = gcry_check_version(nullptr);
   gcry_md_hd_t hash = nullptr;
-  if (gcry_md_open(&hash, GCRY_MD_SHA256, 0)) return "";
+  if (const gcry_error_t failed = gcry_md_open(&hash, GCRY_MD_SHA256, 0))
+    throw UserError(
+        fmt::format("'{}' cannot be hashed: libgcrypt: {}", one_line(file.string()), gcry_strerror(failed)));
   const std::unique_ptr<gcry_md_handle, void (*)(gcry_md_hd_t)> closes(hash, gcry_md_close);
   const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return "";
+  if (fd < 0) unreadable(file);
   std::vector<char> block(std::size_t{1} << 18);
   ssize_t n = 0;
   while ((n = ::read(fd, block.data(), block.size())) > 0)
     gcry_md_write(hash, block.data(), static_cast<std::size_t>(n));
+  const int failed = errno;
   ::close(fd);
-  if (n < 0) return "";
+  errno = failed;
+  if (n < 0) unreadable(file);
   const unsigned char* const digest = gcry_md_read(hash, GCRY_MD_SHA256);
   std::string text;
   for (unsigned i = 0; i < gcry_md_get_algo_dlen(GCRY_MD_SHA256); ++i)
@@ -60,7 +73,7 @@ Provenance program_provenance() {
   return out;
 }
 
-Provenance provenance_of(const ParamSet& params, InputFiles inputs) {
+Provenance provenance_of(const ParamSet& params, InputFiles inputs, const InputFiles& read) {
   Provenance out = program_provenance();
   for (const ParamBase* p : params.all()) {
     const bool named = std::any_of(inputs.begin(), inputs.end(),
@@ -68,8 +81,11 @@ Provenance provenance_of(const ParamSet& params, InputFiles inputs) {
     if (!named && is_path_key(*p) && !p->text().empty() && has_effect(*p))
       inputs.emplace_back(p->key(), p->text());
   }
-  std::sort(inputs.begin(), inputs.end());
-  for (const auto& [name, file] : inputs) out.inputs.emplace_back(name, sha256_of(file));
+  std::error_code error;
+  for (const auto& [name, file] : inputs)
+    out.inputs.emplace_back(name, fs::exists(file, error) ? sha256_of(file) : "");
+  for (const auto& [name, file] : read) out.inputs.emplace_back(name, sha256_of(file));
+  std::sort(out.inputs.begin(), out.inputs.end());
   return out;
 }
 
