@@ -22,6 +22,16 @@ class RamWatch {
   };
   /// A load, in the order of the program.
   virtual void loaded(const Load& load) = 0;
+  struct Access {
+    std::uint32_t offset = 0;
+    std::uint32_t pc = 0;          ///< of the instruction
+    std::uint64_t clock = 0;       ///< at which the core got the word
+    std::uint64_t waited = 0;      ///< clocks before it, for words of another master's burst
+    std::uint64_t room_waits = 0;  ///< as in Load
+  };
+  /// A load, a store or a fetch, in the order of the program and of clocks; of fetches only those that are looked up,
+  /// which are all while a burst is under way.
+  virtual void accessed(const Access& access) = 0;
   struct Burst {
     std::uint32_t offset = 0;
     unsigned bytes = 0;

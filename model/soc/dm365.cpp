@@ -409,7 +409,8 @@ trace::Surroundings Dm365::transfer_surroundings() {
   const auto whole = [](const IntParam& p) { return static_cast<unsigned>(p()); };
   return {{whole(params_.edma.request_clocks), whole(params_.edma_tc.fifo), whole(params_.edma_tc.depth),
            whole(params_.cpu.tcm_dma_latency), whole(params_.cpu.tcm_dma_word_clocks),
-           params_.config_bus.fast_latency()},
+           params_.config_bus.fast_latency(), whole(params_.cpu.tcm_banks), 1 + whole(params_.cpu.tcm_wait_states),
+           params_.cpu.tcm_first.is("core")},
           [this](std::uint32_t address) { return config.latency_at(address); },
           [this](Master m) { return scr.crossbar().priority(m); },
           [this] {

@@ -103,8 +103,8 @@ TEST(TraceFileTest, EveryFlippedBitIsFound) {
 
 TEST(TraceFileTest, OtherVersionsAndFilesAreNamed) {
   std::string bytes = make_trace(6, 10).bytes;
-  bytes[bytes.find('\n') - 1] = '5';
-  EXPECT_THAT(error_of(bytes), testing::HasSubstr("allowed: versions 1 to 4"));
+  bytes[bytes.find('\n') - 1] = '6';
+  EXPECT_THAT(error_of(bytes), testing::HasSubstr("allowed: versions 1 to 5"));
   EXPECT_THAT(error_of("PNG"), testing::HasSubstr("not a bus trace"));
   EXPECT_THAT(error_of(make_trace(6, 10).bytes + "x"), testing::HasSubstr("follows its end"));
 }

@@ -104,9 +104,20 @@ TEST(TraceBlocksTest, GoodOnesAreRead) {
 TEST(TraceBlocksTest, VersionsBesideTheKnownOnesAreRefused) {
   for (const char version : {'1', '2', '3', '4'})
     EXPECT_EQ(FileBuilder(version).block('I', 0, 0, kInfo).end(0).error(), "");
-  for (const char version : {'0', '5'})
+  EXPECT_EQ(FileBuilder('5').block('I', 0, 0, "version 5\n" + kInfo).end(0).error(), "");
+  for (const char version : {'0', '6'})
     EXPECT_THAT(FileBuilder(version).block('I', 0, 0, kInfo).end(0).error(),
-                HasSubstr("its version is not known; allowed: versions 1 to 4"));
+                HasSubstr("its version is not known; allowed: versions 1 to 5"));
+}
+
+// The first line is under no checksum: one flipped bit makes 4 or 1 of 5.
+TEST(TraceBlocksTest, TheVersionIsInTheDescriptionToo) {
+  EXPECT_THAT(FileBuilder('5').block('I', 0, 0, kInfo).end(0).error(), HasSubstr("its description has no version"));
+  for (const char version : {'1', '4'})
+    EXPECT_THAT(FileBuilder(version).block('I', 0, 0, "version 5\n" + kInfo).end(0).error(),
+                HasSubstr("'version' in its description"));
+  EXPECT_THAT(FileBuilder('5').block('I', 0, 0, "version 4\n" + kInfo).end(0).error(),
+              HasSubstr("another version than its description"));
 }
 
 TEST(TraceBlocksTest, TheirOrderAndNumberMatter) {

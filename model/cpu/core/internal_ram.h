@@ -62,7 +62,9 @@ class InternalRam {
   /// To be called for an access of the core: waits until all agents that act before the time of the
   /// access have acted, and for the bank.
   /// @param conflicts the executed instruction was fetched from the bank that holds `pa`
-  void access(std::uint32_t pa, TcmPort::Side side, bool conflicts);
+  /// @return clocks waited for words of other masters
+  std::uint64_t access(std::uint32_t pa, TcmPort::Side side, bool conflicts);
+  unsigned wait_states() const { return wait_; }
 
   TcmPort& port() { return port_; }
   const TcmPort& port() const { return port_; }

@@ -13,7 +13,9 @@ void Core::ram_access(std::uint32_t pa, TcmPort::Side side) {
   const bool conflicts =
       ram_.own_conflicts() && side == TcmPort::Side::kData && fetch_.in_ram() &&
       ram_.port().same_bank(ram_.offset(pa), fetch_.current_ram_offset());
-  ram_.access(pa, side, conflicts);
+  const std::uint64_t waited = ram_.access(pa, side, conflicts);
+  if (ram_watch_) [[unlikely]]
+    ram_watch_->accessed({ram_.offset(pa), regs_.pc, ledger_.cycle - ram_.wait_states(), waited, bus_.room_waits()});
 }
 
 /// An aligned, cacheable load that is known to be permitted. Returns nullptr, without having done
@@ -75,7 +77,7 @@ void Core::store_to_ram(std::uint32_t va, std::uint32_t pa, unsigned bytes, std:
   std::memcpy(ram_.at(pa), &value, bytes);
   fetch_.drop_ram(ram_.offset(pa));
   ++ram_.writes_of(pa);
-  if (ram_.quick())
+  if (ram_.quick() && !ram_watch_)  // who watches learns of each store
     data_.hint_ram_writes(va, system_.modified(va), ram_.at(pa & ~(DataCache::kWriteSpan - 1)),
                           ram_.writes_of(pa));
 }

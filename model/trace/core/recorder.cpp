@@ -69,6 +69,8 @@ void BusRecorder::begin(Picoseconds start) {
   core_before_ = core_(nullptr);
   room_waits_at_open_ = core_before_.room_waits;
   core_before_.room_waits = 0;
+  core_origin_ = core_before_.origin;
+  accesses_.clear();
   for (Stream& s : streams_) drop_early(s);
 }
 
@@ -101,7 +103,10 @@ void BusRecorder::submitted(const MemRequest& r, bool to_sdram) {
     return;
   }
   if (r.master == Master::kArmD) register_looks_ = {};
-  if (stream == 0) place_wait_before(r);
+  if (stream == 0) {
+    place_wait_before(r);
+    place_work_before(r);
+  }
   Stream& s = streams_[stream];
   const std::uint64_t number = s.next;
   Pending& p = append(s, r.issued);
@@ -175,7 +180,7 @@ void BusRecorder::release_core(Stream& s, Pending& p, const MemRequest& r) {
     if (anchor) {
       p.reference = anchor->number;
       p.record.from_first = first;
-      const std::uint64_t work = idle + (to - std::min(wake, to));
+      const std::uint64_t work = idle + (to - std::min(wake, to)) + take_accesses(p.record, true, from, wake);
       p.record.gap = to - from > work ? to - from - work : 0;
     }
   } else if (!drained) {
@@ -183,7 +188,8 @@ void BusRecorder::release_core(Stream& s, Pending& p, const MemRequest& r) {
   } else if (anchor) {
     p.record.release = Release::kAfter;
     p.record.from_first = first;
-    p.record.gap = came - std::min(from, came);
+    const std::uint64_t not_own = from + take_accesses(p.record, true, from, came);
+    p.record.gap = came - std::min(not_own, came);
     p.reference = anchor->number;
   }
   steps_[next_step_++ % kSteps] = {number, now.asked, now.room_waits, r.write, blocking};
@@ -213,7 +219,8 @@ void BusRecorder::release_in_program(Stream& s, Pending& p, std::uint64_t asked)
                : clock_.edge_at_or_after(first ? o->first : o->last) - step->room_waits;
   p.record.release = Release::kAfter;
   p.record.from_first = first;
-  p.record.gap = asked - std::min(from, asked);
+  const std::uint64_t not_own = from + take_accesses(p.record, false, from, asked);
+  p.record.gap = asked - std::min(not_own, asked);
   p.reference = step->number;
 }
 
@@ -418,6 +425,8 @@ void BusRecorder::write_one(Stream& s, unsigned index) {
   if (r.release == Release::kAt) {
     r.from_first = false;
     r.gap = 0;
+    r.ram.clear();
+    r.look_after = r.look_clocks = 0;
   }
   r.at = r.release != Release::kAt ? 0 : r.kind == Kind::kTransfer ? p.ready : p.issued;
   if (Outcome* o = outcome(s, number)) o->place = s.written;

@@ -80,6 +80,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
     pulsed_at_ = at;
   }
   void loaded(const Load& load) override;
+  void accessed(const Access& access) override;
   void moved(const Burst& burst, Picoseconds at) override;
 
   /// After close(). `info` has the parameters and the clocks of crossbar and SDRAM; the rest is
@@ -199,6 +200,7 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   void note_wait(std::uint64_t began, std::uint64_t seen, std::uint64_t room_waits, const WaitEnd& end);
   void place_waits(std::uint64_t asked = kNone);
   void place_wait_before(const MemRequest& r);
+  void place_work_before(const MemRequest& r);
   void release_behind_latest(Stream& s, Pending& p, Picoseconds at, unsigned align);
   std::size_t interrupt_before(std::uint64_t woke) const;
   void submit_aside(const MemRequest& r);
@@ -213,6 +215,8 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   void release_in_program(Stream& s, Pending& p, std::uint64_t asked);
   void note_room(Stream& s, Pending& p, const MemRequest& r, const CoreState& now);
   void note_flag(const Load& load);
+  std::uint64_t take_accesses(Record& r, bool with_room_waits, std::uint64_t from, std::uint64_t to);
+  void take_looks(Record& r, std::uint64_t began, std::uint64_t seen);
   void release_line(Stream& s, Pending& p, Picoseconds at);
   void release_repeating(Stream& s, Pending& p, Picoseconds at);
   void release_by_data(Stream& s, Pending& p, Picoseconds at);
@@ -276,6 +280,20 @@ class BusRecorder : public MemObserver, public TransferObserver, public RamWatch
   std::size_t next_poller_ = 0;
   Looks ram_looks_, register_looks_;
   std::deque<Wait> waits_;
+  /// An access of the core to internal RAM, in clocks of the recording.
+  struct RamAccess {
+    std::uint64_t clock, waited, room_waits;
+    std::uint32_t pc;
+    std::uint8_t bank;
+    /// Place in the program, as Step::asked; or the clock.
+    std::uint64_t place(bool with_room_waits) const { return with_room_waits ? clock : clock - room_waits; }
+  };
+  std::deque<RamAccess> accesses_;        // that no record has yet
+  struct {
+    std::uint32_t after = 0, clocks = 0;
+    std::uint8_t bank = 0;
+  } looks_;                               // of the latest loop that looked at a word in vain
+  std::uint64_t core_origin_ = 0;
   std::uint32_t not_followed_ = 0;        // masters, one bit each, some of whose records keep their times
   bool open_ = false, delayed_ = false;  // delayed_: to be opened when no transfer is under way
   Picoseconds start_ = 0, end_ = kNever;

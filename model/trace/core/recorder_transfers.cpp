@@ -21,6 +21,8 @@ constexpr Picoseconds kToTheLine = kPsPerUs;
 /// A core that woke so many clocks ago serves an interrupt, and sleeps again when it has done so.
 constexpr std::uint64_t kClocksOfAHandler = 4096;
 constexpr std::size_t kEndsKept = 16;
+/// Accesses to internal RAM between two records of the core; of more, the latest ones.
+constexpr std::size_t kAccessesKept = 1u << 16;
 
 }  // namespace
 
@@ -39,6 +41,7 @@ void BusRecorder::submit_aside(const MemRequest& r) {
     awaited_ = &r;
     if (looks_in_a_loop(r)) return;
     place_waits();
+    place_work_before(r);
   } else {
     place_wait_before(r);
     posted_.push_back(&r);
@@ -236,7 +239,8 @@ void BusRecorder::note_sleep() {
   if (before != kNone) {
     p.reference = before;
     p.record.from_first = first;
-    p.record.gap = woke > from + idle ? woke - from - idle : 0;
+    const std::uint64_t not_own = from + idle + take_accesses(p.record, true, from, woke);
+    p.record.gap = woke > not_own ? woke - not_own : 0;
   }
   const std::uint64_t room_waits = now.room_waits - room_waits_at_open_;
   note_step(room_waits, woke - std::min(room_waits, woke));
@@ -272,6 +276,7 @@ void BusRecorder::note_ends(Picoseconds at) {
     place_waits();
     Pending& p = append_step(at);
     release_behind_latest(streams_[0], p, at, 1);
+    p.record.gap -= std::min(p.record.gap, take_accesses(p.record, true, to - std::min(to, p.record.gap), to));
     p.record.release = Release::kWhen;
     p.record.event = event;
     const std::uint64_t room_waits = now.room_waits - room_waits_at_open_;
@@ -294,6 +299,7 @@ void BusRecorder::place_waits(std::uint64_t asked) {
     const Wait& w = waits_.front();
     Pending& p = append_step(clock_.edge(w.seen));
     release_in_program(s, p, w.began - std::min(w.room_waits, w.began));
+    if (w.end.point == Point::kDelivered) take_looks(p.record, w.began - std::min(w.room_waits, w.began), w.asked());
     p.record.release = Release::kWhen;
     p.record.source = w.end.by.stream;
     p.record.point = w.end.point;
@@ -336,6 +342,81 @@ void BusRecorder::loaded(const Load& load) {
   ram_looks_ = {};
 }
 
+void BusRecorder::accessed(const Access& access) {
+  if (!open_ || surroundings_.edma.ram_banks == 0 || access.clock < core_origin_) return;
+  const std::uint32_t bank = access.offset / (INTERNAL_RAM_BYTES / surroundings_.edma.ram_banks);
+  accesses_.push_back({access.clock - core_origin_, access.waited, access.room_waits - room_waits_at_open_, access.pc,
+                       static_cast<std::uint8_t>(bank)});
+  if (accesses_.size() > kAccessesKept) accesses_.pop_front();
+}
+
+/// The record's gap was from `from` to `to`, clocks with or without those that the core has waited for room: what it
+/// did in internal RAM meanwhile becomes part of the record. Accesses from before that no record has taken are
+/// forgotten. @return clocks for which they waited for the EDMA, which are not the core's own
+std::uint64_t BusRecorder::take_accesses(Record& r, bool with_room_waits, std::uint64_t from, std::uint64_t to) {
+  std::uint64_t waited = 0, last = 0;
+  std::uint32_t pc = 0;  // of the last one
+  for (; !accesses_.empty() && accesses_.front().place(with_room_waits) < to; accesses_.pop_front()) {
+    const RamAccess& a = accesses_.front();
+    const std::uint64_t got = a.place(with_room_waits);
+    if (got < from || r.ram.size() == kMaxRamRuns) continue;
+    const std::uint64_t wanted = std::max(from, got - std::min(got, a.waited));
+    const std::uint64_t place = wanted - from - waited;
+    waited += got - wanted;
+    const bool follows = !r.ram.empty() && r.ram.back().bank == a.bank && place == last + surroundings_.edma.ram_hold;
+    if (follows && a.pc == pc && r.ram.back().count > 1 && !r.ram.back().together) {
+      --r.ram.back().count;  // the last one was this instruction's first
+      r.ram.push_back({surroundings_.edma.ram_hold, 2, a.bank, true});
+    } else if (follows && (a.pc == pc || !r.ram.back().together)) {
+      ++r.ram.back().count;
+      r.ram.back().together = a.pc == pc;
+    } else {
+      r.ram.push_back({static_cast<std::uint32_t>(place - last), 1, a.bank});
+    }
+    last = place;
+    pc = a.pc;
+  }
+  return waited;
+}
+
+/// A request for which the core sees its buffers out first: it is released by their end. What the program did in
+/// internal RAM before it came to the request becomes a step of its own.
+void BusRecorder::place_work_before(const MemRequest& r) {
+  if (accesses_.empty() || !open_ || r.issued < start_) return;
+  const CoreState now = core_(&r);
+  if (now.drains == core_before_.drains && !register_access_) return;
+  const std::uint64_t asked =
+      now.asked == 0 ? accesses_.back().place(false) + 1 : now.asked + room_waits_at_open_ - now.origin;
+  if (accesses_.front().place(false) >= asked) return;
+  Pending& p = append_step(clock_.edge(asked));
+  release_in_program(streams_[0], p, asked);
+}
+
+/// The program has looked at a word of internal RAM in vain from `began` on, and has `seen` it changed: how often,
+/// which it would do for as long as it takes. A program that has not looked in vain would look as it did before.
+void BusRecorder::take_looks(Record& r, std::uint64_t began, std::uint64_t seen) {
+  std::uint64_t last = began;
+  for (unsigned looks = 0; began < seen && !accesses_.empty() && accesses_.front().place(false) <= seen;) {
+    const RamAccess a = accesses_.front();
+    const std::uint64_t place = a.place(false);
+    if (place >= began && ++looks == 1) {
+      std::uint64_t before = 0;  // where the last access in the gap was
+      for (const RamRun& run : r.ram) before += run.skip + std::uint64_t{run.count - 1} * surroundings_.edma.ram_hold;
+      r.ram.push_back({static_cast<std::uint32_t>(r.gap - std::min(r.gap, before)), 1, a.bank});
+    } else if (place >= began) {
+      looks_.clocks = static_cast<std::uint32_t>(place - last - std::min(place - last, a.waited));
+      if (looks == 2) looks_.after = looks_.clocks;
+      looks_.bank = a.bank;
+    }
+    if (place == seen) break;  // a part of what comes next
+    last = place;
+    accesses_.pop_front();
+  }
+  r.look_after = looks_.after;
+  r.look_clocks = looks_.clocks;
+  r.look_bank = looks_.bank;
+}
+
 void BusRecorder::moved(const Burst& burst, Picoseconds at) {
   if (!(of_transfers_ >> index(burst.master) & 1u)) return;
   const Controller& c = controllers_[master_info(burst.master).unit];
@@ -344,7 +425,7 @@ void BusRecorder::moved(const Burst& burst, Picoseconds at) {
     return w.address - INTERNAL_RAM_DATA_BASE == burst.offset;
   });
   if (it == under_way.end()) return;
-  note_ram_waits(c, *it, burst);
+  if (surroundings_.edma.ram_banks == 0) note_ram_waits(c, *it, burst);
   if (!burst.write) return;
   for (Flag& f : flags_)
     if (f.word - burst.offset < burst.bytes)

@@ -41,6 +41,17 @@ enum class Point : std::uint8_t {
 };
 inline constexpr std::uint8_t kPoints = 3;
 
+/// Accesses of the core to one bank of internal RAM, each as soon as the one before is over.
+struct RamRun {
+  /// Clocks of the core's own from the begin of the last access before, or from what the record's gap counts from.
+  std::uint32_t skip = 0;
+  std::uint32_t count = 1;
+  std::uint8_t bank = 0;
+  /// They are of one instruction: a burst that arrives after it has begun finds all of them done.
+  bool together = false;
+  friend bool operator==(const RamRun&, const RamRun&) = default;
+};
+
 struct Record {
   Release release = Release::kAt;
   Kind kind = Kind::kRequest;
@@ -73,6 +84,13 @@ struct Record {
   /// kTransfer: clocks of the core for which its bursts that read and that write internal RAM waited for the core's
   /// accesses to it, in the order of the bursts; the last ones that did not wait are left out.
   std::array<std::vector<std::uint16_t>, 2> ram_waits;
+  /// kAfter, kWhen, of the core: its accesses to internal RAM in the gap. Clocks for which these waited for the EDMA
+  /// are not in the gap.
+  std::vector<RamRun> ram;
+  /// kStep: until what it waits for has come the program looks at a word of internal RAM, so many clocks after the gap
+  /// and then again and again after so many; 0: it does not.
+  std::uint32_t look_after = 0, look_clocks = 0;
+  std::uint8_t look_bank = 0;
   bool on_bus() const { return kind == Kind::kRequest || kind == Kind::kAside; }
   friend bool operator==(const Record&, const Record&) = default;
 };
@@ -81,6 +99,10 @@ struct Record {
 inline constexpr std::uint32_t kMaxBack = 4095;
 /// Deepest window of a master; as many requests as a port of the crossbar queues.
 inline constexpr unsigned kMaxWindow = 64;
+/// Most runs of accesses to internal RAM that a record may have; what the core does beyond them is not in the trace.
+inline constexpr std::size_t kMaxRamRuns = 4096;
+/// Most banks of internal RAM.
+inline constexpr unsigned kMaxRamBanks = 4;
 
 /// One agent whose records are in program order: the core with both of its ports, a video port.
 struct StreamInfo {
@@ -117,6 +139,10 @@ struct EdmaInfo {
   unsigned fifo = 0, depth = 0;       ///< bytes; destination registers
   unsigned ram_latency = 0, ram_word_clocks = 0;  ///< internal RAM, clocks of the core
   Picoseconds register_latency = 0;   ///< each word of a burst to registers
+  /// The core's side of internal RAM: banks (0: its accesses are not in the trace), clocks for which an access holds
+  /// its bank, whether it comes before a word of the EDMA.
+  unsigned ram_banks = 0, ram_hold = 1;
+  bool ram_core_first = true;
   friend bool operator==(const EdmaInfo&, const EdmaInfo&) = default;
 };
 

@@ -14,6 +14,9 @@ static_assert(kMasterCount < kAsideBit && kMasterCount + 1 < 1u << kPointShift);
 // What of a transfer differs from the one before.
 constexpr std::uint8_t kIndices = 1, kCounts = 2, kModes = 4, kRamWaits = 8;
 
+/// In place of a kind: what follows are accesses to internal RAM, then their record. Of version 5 on.
+constexpr unsigned kWork = static_cast<unsigned>(Kind::kTransfer) - static_cast<unsigned>(Kind::kMark) + 1;
+
 /// Of version 3 on.
 bool has_room(const Record& r) { return r.write && r.on_bus() && r.release == Release::kAfter; }
 
@@ -83,9 +86,27 @@ void encode_transfer(const Record& r, CodeState& s, std::string& out) {
   s.transfer_priority = r.priority;
 }
 
+/// The core's accesses to internal RAM in the record's gap: they come before it.
+void encode_ram(const Record& r, std::string& out) {
+  out.push_back(static_cast<char>(kNoRequest));
+  put_number(out, kWork << kKindShift);
+  put_number(out, r.ram.size() << 1 | (r.look_clocks != 0 ? 1u : 0u));
+  if (r.look_clocks != 0) {
+    put_number(out, r.look_after);
+    put_number(out, std::uint64_t{r.look_clocks} * kMaxRamBanks + r.look_bank);
+  }
+  for (const RamRun& run : r.ram) {
+    put_number(out, std::uint64_t{run.skip} * (2 * kMaxRamBanks) + (run.together ? kMaxRamBanks : 0u) + run.bank);
+    put_number(out, run.count);
+  }
+}
+
+bool has_ram(const Record& r) { return !r.ram.empty() || r.look_clocks != 0; }
+
 }  // namespace
 
 void encode(const Record& r, CodeState& s, std::string& out) {
+  if (has_ram(r)) encode_ram(r, out);
   const CodeState::Kind& kind = s.kind_of(r);
   const bool attributes =
       r.on_bus() && (kind.bytes != r.bytes || kind.priority != r.priority || kind.locked != r.locked);
@@ -206,6 +227,33 @@ void decode_transfer(ByteReader& in, CodeState& s, Record& r) {
   r.priority = s.transfer_priority;
 }
 
+/// The core's accesses to internal RAM.
+void decode_ram(ByteReader& in, Record& r) {
+  const auto clocks = [&in](std::uint64_t of) {
+    const std::uint64_t n = in.number();
+    if (n / of > ~std::uint32_t{0}) throw BadTrace("an impossible access to internal RAM");
+    return n;
+  };
+  const std::uint64_t head = in.number();
+  if (head >> 1 > kMaxRamRuns) throw BadTrace("too many accesses to internal RAM");
+  if (head & 1) {
+    r.look_after = static_cast<std::uint32_t>(clocks(1));
+    const std::uint64_t look = clocks(kMaxRamBanks);
+    r.look_clocks = static_cast<std::uint32_t>(look / kMaxRamBanks);
+    r.look_bank = static_cast<std::uint8_t>(look % kMaxRamBanks);
+    if (r.look_clocks == 0) throw BadTrace("an impossible look at internal RAM");
+  }
+  r.ram.resize(head >> 1);
+  for (RamRun& run : r.ram) {
+    const std::uint64_t n = clocks(2 * kMaxRamBanks);
+    run.skip = static_cast<std::uint32_t>(n / (2 * kMaxRamBanks));
+    run.together = n / kMaxRamBanks & 1;
+    run.bank = static_cast<std::uint8_t>(n % kMaxRamBanks);
+    run.count = static_cast<std::uint32_t>(clocks(1));
+    if (run.count == 0) throw BadTrace("an impossible access to internal RAM");
+  }
+}
+
 /// What a request waits for that an event releases.
 void decode_event(ByteReader& in, CodeState& s, Record& r, unsigned version) {
   const std::uint64_t source = version == 1 ? 0 : in.number();
@@ -226,12 +274,18 @@ void decode_event(ByteReader& in, CodeState& s, Record& r, unsigned version) {
 
 void decode(ByteReader& in, CodeState& s, Record& r, unsigned version) {
   r = Record{};
-  const std::uint8_t head = in.byte();
+  std::uint8_t head = in.byte();
+  std::uint64_t word = head == kNoRequest ? in.number() : 0;
+  const bool work = version >= 5 && head == kNoRequest && word == kWork << kKindShift;
+  if (work) {
+    decode_ram(in, r);
+    head = in.byte();
+  }
   r.write = head & kWrite;
   r.from_first = head & kFromFirst;
   std::uint64_t release = head >> kReleaseShift & 3u;
   if ((head & kNoRequest) == kNoRequest) {
-    const std::uint64_t word = in.number();
+    if (work || head != kNoRequest) word = in.number();
     release = word & ((1u << kKindShift) - 1);
     const std::uint64_t kind = (word >> kKindShift) + static_cast<unsigned>(Kind::kMark);
     if (release > 2 || kind > static_cast<unsigned>(version >= 4 ? Kind::kTransfer : Kind::kMark))
@@ -248,6 +302,8 @@ void decode(ByteReader& in, CodeState& s, Record& r, unsigned version) {
     decode_request(in, head, s, r, version);
   }
   r.release = static_cast<Release>(release);
+  if (work && (r.release == Release::kAt || (r.look_clocks != 0 && r.kind != Kind::kStep)))
+    throw BadTrace("accesses to internal RAM of a record without a gap");
   if (r.release == Release::kAt) {
     r.at = s.at += unzigzag(in.number());
     return;

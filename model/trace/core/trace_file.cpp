@@ -14,10 +14,13 @@
 namespace fovea::trace {
 namespace {
 
-constexpr std::string_view kMagic = "FOVEA-BUS-TRACE ", kVersions[] = {"1\n", "2\n", "3\n", "4\n"};
+constexpr std::string_view kMagic = "FOVEA-BUS-TRACE ", kVersions[] = {"1\n", "2\n", "3\n", "4\n", "5\n"};
 constexpr std::uint32_t kBlockRecords = 8192;
-// No record needs more; a block that claims more is not ours.
+// No record needs more, but for its accesses to internal RAM; a block that claims more is not ours.
 constexpr std::uint32_t kMaxRecordBytes = 64, kMaxInfoBytes = 64u << 20;
+// A block with such accesses ends with the record that brings it to so many bytes. A run of them takes up to ten.
+constexpr std::uint32_t kBlockBytes = kBlockRecords * kMaxRecordBytes;
+constexpr std::uint32_t kMaxBlockBytes = kBlockBytes + kMaxRecordBytes + 10 * kMaxRamRuns;
 constexpr std::size_t kHeadBytes = 20;
 enum BlockKind : std::uint8_t { kInfo = 'I', kRecords = 'R', kEnd = 'E' };
 
@@ -55,6 +58,7 @@ std::string make_block(BlockKind kind, unsigned stream, std::uint32_t count, std
 
 std::string info_text(const TraceInfo& info) {
   std::ostringstream out;
+  out << "version " << std::size(kVersions) << "\n";  // under the checksum, which the first line is not
   out << "start " << info.start << "\nend " << info.end << "\nrefresh " << info.refresh
       << "\n";
   if (info.core_until != 0) out << "core_until " << info.core_until << "\n";
@@ -79,6 +83,8 @@ std::string info_text(const TraceInfo& info) {
   if (const EdmaInfo& e = info.edma; e.request_clocks != 0)
     out << "edma " << e.request_clocks << ' ' << e.fifo << ' ' << e.depth << ' ' << e.ram_latency << ' '
         << e.ram_word_clocks << ' ' << e.register_latency << "\n";
+  if (const EdmaInfo& e = info.edma; e.ram_banks != 0)
+    out << "ram " << e.ram_banks << ' ' << e.ram_hold << ' ' << e.ram_core_first << "\n";
   for (const Master m : info.kept) out << "kept " << index(m) << "\n";
   return out.str();
 }
@@ -106,7 +112,7 @@ void TraceWriter::add(unsigned stream, const Record& record) {
   Stream& s = streams_[stream];
   encode(record, s.state, s.raw);
   ++records_;
-  if (++s.count == kBlockRecords) close_block(s, stream);
+  if (++s.count == kBlockRecords || s.raw.size() >= kBlockBytes) close_block(s, stream);
 }
 
 void TraceWriter::finish(const TraceInfo& info, const std::function<void(std::string_view)>& put) {
@@ -138,7 +144,7 @@ TraceFile::TraceFile(std::string name, std::unique_ptr<ByteSource> bytes)
   if (!recognises(begin)) bad("it is not a bus trace");
   for (unsigned v = 0; v < std::size(kVersions); ++v)
     if (begin.substr(kMagic.size()) == kVersions[v]) version_ = v + 1;
-  if (version_ == 0) bad("its version is not known; allowed: versions 1 to 4");
+  if (version_ == 0) bad("its version is not known; allowed: versions 1 to 5");
   std::uint64_t at = begin.size();
   bool ended = false, informed = false;
   while (at < size) {
@@ -155,7 +161,7 @@ TraceFile::TraceFile(std::string name, std::unique_ptr<ByteSource> bytes)
       bad("it is corrupted: wrong checksum" + where);
     const bool size_ok = kind == kRecords
                              ? b.count > 0 && b.count <= kBlockRecords &&
-                                   b.raw <= std::uint64_t{b.count} * kMaxRecordBytes
+                                   b.raw <= (version_ < 5 ? b.count * kMaxRecordBytes : kMaxBlockBytes)
                              : b.raw <= kMaxInfoBytes;
     if (!size_ok) bad("it is corrupted: a block of impossible size" + where);
     if (!informed && kind != kInfo) bad("it is corrupted: no description" + where);
@@ -243,6 +249,10 @@ void TraceFile::info_line(const std::string& key, std::string_view rest) {
   if (const auto time = times.find(key); time != times.end()) {
     numbers(1);
     info_.*time->second = v[0];
+  } else if (key == "version" && version_ >= 5) {
+    numbers(1);
+    if (v[0] != version_) bad("it is corrupted: its first line has another version than its description");
+    version_told_ = true;
   } else if (key == "scr" || key == "ddr") {
     numbers(3);
     if (v[1] == 0) bad("it is corrupted: a clock without a frequency");
@@ -286,6 +296,13 @@ void TraceFile::info_line(const std::string& key, std::string_view rest) {
     if (!sizes) bad("it is corrupted: an impossible EDMA");
     info_.edma = {static_cast<unsigned>(v[0]), static_cast<unsigned>(v[1]), static_cast<unsigned>(v[2]),
                   static_cast<unsigned>(v[3]), static_cast<unsigned>(v[4]), v[5]};
+  } else if (key == "ram") {
+    numbers(3);
+    if (v[0] == 0 || v[0] > kMaxRamBanks || v[1] == 0 || v[1] > 1024 || v[2] > 1 || info_.edma.request_clocks == 0)
+      bad("it is corrupted: an impossible internal RAM");
+    info_.edma.ram_banks = static_cast<unsigned>(v[0]);
+    info_.edma.ram_hold = static_cast<unsigned>(v[1]);
+    info_.edma.ram_core_first = v[2] != 0;
   } else if (key == "kept") {
     numbers(1);
     if (v[0] >= kMasterCount) bad("it is corrupted: an unknown master");
@@ -317,6 +334,7 @@ void TraceFile::check_info() {
     stream_of_[index(m.id)] = m.stream;
   }
   if (!ok) bad("it is corrupted: an impossible description");
+  if (version_ >= 5 && !version_told_) bad("it is corrupted: its description has no version");
   // Before version 4 nothing was noted of what the EDMA waits for.
   if (version_ < 4)
     for (const MasterInfo& m : info_.masters)
@@ -345,6 +363,12 @@ bool TraceFile::next(unsigned stream, Record& record) {
     if (record.kind == Kind::kTransfer && !s.transfers) throw BadTrace("a transfer in another's stream");
     if (record.gap > s.longest_gap || record.wake_gap > s.longest_gap)
       throw BadTrace("a gap of hours");
+    if (!record.ram.empty() && (stream != 0 || info_.edma.ram_banks == 0))
+      throw BadTrace("accesses to internal RAM of another stream than the core's");
+    const auto no_bank = [&](const RamRun& r) { return r.bank >= info_.edma.ram_banks; };
+    if (std::any_of(record.ram.begin(), record.ram.end(), no_bank) ||
+        record.look_bank >= std::max(info_.edma.ram_banks, 1u))
+      throw BadTrace("an unknown bank of internal RAM");
     if (record.back > s.read || record.room > s.read) throw BadTrace("a reference to before the first record");
     if (record.release == Release::kWhen) {
       const bool interrupt = record.source == kInterrupt;

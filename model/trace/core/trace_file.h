@@ -46,7 +46,7 @@ class TraceFile : public RecordSource {
   /// True if the bytes begin as a trace does, of whatever version.
   static bool recognises(std::string_view bytes);
   const TraceInfo& info() const { return info_; }
-  /// Version of the format, 1 to 4.
+  /// Version of the format, 1 to 5.
   unsigned version() const { return version_; }
   std::uint64_t records() const { return records_; }
   bool next(unsigned stream, Record& record) override;
@@ -86,6 +86,7 @@ class TraceFile : public RecordSource {
     return none;
   }();
   unsigned version_ = 0;
+  bool version_told_ = false;  // by the description, too
   std::uint64_t records_ = 0;
 };
 

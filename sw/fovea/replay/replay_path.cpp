@@ -30,6 +30,7 @@ ReplayPath::ReplayPath(std::string name, const trace::TraceInfo& info, trace::Re
       source_(source),
       memory_only_(memory_only),
       slaves_(info.edma),
+      ram_(info.edma),
       start_(info.start),
       last_(info.start),
       memory_(params.crossbar, params.ddr, {.ram_size = INTERNAL_RAM_BYTES}, *this, DiagnosticsRef::current(),
@@ -184,7 +185,15 @@ void ReplayPath::next_record(unsigned stream) {
   s.number = s.played;
   s.valid = source_.next(stream, s.record);
   if (s.valid && s.record.kind == trace::Kind::kRequest) check(s.record, s);
-  if (stream == 0 && !s.valid) core_has_ended(info_.core_until);
+  if (stream == 0 && !s.valid) note_end_of_core();
+}
+
+/// The trace has no more records of the core: it has ended when the last ones have gone out.
+void ReplayPath::note_end_of_core() {
+  if (ready_.empty())
+    core_has_ended(info_.core_until);
+  else
+    ended_in_trace_ = true;
 }
 
 /// While the core sleeps, what goes on is chosen when its time is asked for.
@@ -196,7 +205,7 @@ void ReplayPath::next_in_wake_order() {
   if (wake_order_->next(n)) return set_core_record(n);
   s.valid = asleep_ = wake_order_->asleep();
   settled_ = false;
-  if (!s.valid) core_has_ended(info_.core_until);
+  if (!s.valid) note_end_of_core();
 }
 
 void ReplayPath::end_with_window() {
@@ -277,7 +286,7 @@ inline std::uint64_t ReplayPath::aligned(const Stream& s, std::uint64_t edge) {
 }
 
 /// When the record's release lets it go; kNever while that is not known.
-inline Picoseconds ReplayPath::released(const Stream& s) const {
+inline Picoseconds ReplayPath::released(const Stream& s) {
   const trace::Record& r = s.record;
   if (r.release == trace::Release::kAt) return r.at;
   Picoseconds from = start_;
@@ -288,10 +297,17 @@ inline Picoseconds ReplayPath::released(const Stream& s) const {
     if (from == kNever) return kNever;
   }
   std::uint64_t edge = s.clock.edge_at_or_after(from) + r.gap;
+  const bool of_core = ram_.played() && &s == streams_.data();
+  if (of_core) edge += wait_in_gap(r, edge - r.gap);
   if (r.release == trace::Release::kWhen) {
     const Picoseconds risen = event(r);
     if (risen == kNever) return kNever;
     edge = std::max(edge, s.clock.edge_at_or_after(risen)) + r.wake_gap;
+    if (of_core && r.look_clocks != 0) {
+      ram_.looks_until(edge);
+      ram_.follow();
+      note_ram_over();
+    }
   }
   if (r.room != 0) {
     const std::uint64_t before = s.number - r.room;
@@ -303,6 +319,18 @@ inline Picoseconds ReplayPath::released(const Stream& s) const {
   return s.clock.edge(edge);
 }
 
+/// Clocks for which the core waits for bursts in internal RAM, in the record's gap from an edge on.
+std::uint64_t ReplayPath::wait_in_gap(const trace::Record& r, std::uint64_t edge) {
+  if (asleep_ && !settled_) return 0;
+  if (!ram_.known()) {
+    ram_.gap_begins(r, edge);
+    note_ram_over();
+  }
+  return ram_.waited();
+}
+
+void ReplayPath::note_ram_over() { ram_over_ = ram_.over(streams_[0].clock); }
+
 /// Of a wait for another stream, which one; for an interrupt that of the transfer behind it.
 std::uint8_t ReplayPath::awaited(const trace::Record& r) const {
   if (r.release != trace::Release::kWhen) return trace::kInterrupt;
@@ -311,6 +339,7 @@ std::uint8_t ReplayPath::awaited(const trace::Record& r) const {
 
 /// The time of the stream's next request, if it is known.
 void ReplayPath::prepare(unsigned stream) {
+  if (stream == 0 && ram_.played()) return prepare_core();
   Stream& s = streams_[stream];
   set_time(stream, kNever);
   for (;;) {
@@ -353,6 +382,92 @@ void ReplayPath::prepare(unsigned stream) {
     if (cross_) wake_those_behind(stream);
     next_record(stream);
   }
+}
+
+/// When a request goes out that its program has come to at `came`.
+Picoseconds ReplayPath::time_on_port(const Stream& s, const trace::Record& r, Picoseconds came,
+                                     const Slot& slot) const {
+  Picoseconds at = std::max(came, slot.free);
+  if (s.align > 1 && (r.release != trace::Release::kAt || slot.free > came))
+    at = s.clock.edge(aligned(s, s.clock.edge_at_or_after(at)));
+  return std::max(at, s.earliest);
+}
+
+/// Where the trace has the core's accesses to internal RAM, its program is followed for itself: it comes to a record
+/// at a time which bursts in the RAM may still postpone, and goes on while its requests wait for their port.
+void ReplayPath::prepare_core() {
+  Stream& s = streams_[0];
+  program_time_ = program_time();
+  // What the program shows is no part of it, and may come behind what it does next.
+  for (; program_time_ != kNever && s.record.kind == trace::Kind::kMark; program_time_ = program_time()) {
+    note_outcome(s, program_time_, program_time_);
+    ready_.push_back({std::move(s.record), s.number, program_time_});
+    ram_.next_record();
+    next_record(0);
+  }
+  set_time(0, std::min(ready_time(), program_time_));
+}
+
+/// When the first request that the program has come to goes out; marks among them are noted.
+Picoseconds ReplayPath::ready_time() {
+  Stream& s = streams_[0];
+  for (; !ready_.empty() && ready_.front().record.kind == trace::Kind::kMark; ready_.pop_front()) {
+    const Picoseconds at = std::max(ready_.front().came, s.earliest);
+    marks_.push_back({ready_.front().record.address, at});
+    core_last_ = std::max(core_last_, at);
+    if (on_issue) on_issue(0, at);
+  }
+  if (ready_.empty()) {
+    if (std::exchange(ended_in_trace_, false)) core_has_ended(info_.core_until);
+    return kNever;
+  }
+  const Ready& r = ready_.front();
+  ready_slot_ = place(masters_[index(r.record.master)], r.record.write);
+  return ready_slot_->free == kNever ? kNever : time_on_port(s, r.record, r.came, *ready_slot_);
+}
+
+/// When the program comes to the core's next record, as far as is known.
+Picoseconds ReplayPath::program_time() {
+  Stream& s = streams_[0];
+  // A core that sleeps has seen its buffers out.
+  if (!s.valid || (asleep_ && !ready_.empty())) return kNever;
+  const std::uint8_t earlier = wake_core();
+  const trace::Record& r = s.record;
+  const Picoseconds at = released(s);
+  waits_for_[0] = at == kNever ? awaited(r) : earlier;
+  cross_ |= waits_for_[0] != trace::kInterrupt;
+  if (at == kNever) return kNever;
+  if (at > kLatest) throw UserError(fmt::format("trace '{}': it goes on for hours", name_));
+  if (r.kind == trace::Kind::kMark) return at;
+  return std::max(program_at_, r.kind == trace::Kind::kStep ? at + r.service : at);
+}
+
+/// The time of the core's next event has come: a request goes out, or its program has come to the next record.
+void ReplayPath::go_on_with_core() {
+  Stream& s = streams_[0];
+  const Picoseconds now = next_time_;
+  if (program_time_ > now) {
+    const Ready ready = std::move(ready_.front());
+    ready_.pop_front();
+    issue_request(0, ready.record, ready.number, ready.came, *ready_slot_);
+    prepare(0);
+    return find_next();
+  }
+  settled_ = true;  // nothing has woken the core earlier
+  program_at_ = now;
+  const trace::Record& r = s.record;
+  note_outcome(s, r.kind == trace::Kind::kStep || r.write ? now : kNever, r.on_bus() ? kNever : now);
+  if (r.kind == trace::Kind::kStep) {
+    core_last_ = std::max(core_last_, now);
+    if (on_issue) on_issue(0, now);
+  } else {
+    ready_.push_back({std::move(s.record), s.number, now});
+  }
+  ram_.next_record();
+  next_record(0);
+  if (cross_) wake_those_behind(0);
+  prepare(0);
+  find_next();
 }
 
 /// When the channel controller submits a transfer whose turn comes at `ready`: at an edge of its clock, once its
@@ -417,6 +532,10 @@ void ReplayPath::send(ReplayPipe::Burst& burst) {
 }
 
 void ReplayPath::serve(MemRequest& r, bus::Slave slave, Picoseconds arrival) {
+  if (slave == bus::Slave::kInternalRam && ram_.played()) {
+    ram_.arrive(r, arrival);
+    return begin_in_ram();
+  }
   Picoseconds done = 0;
   if (slave == bus::Slave::kInternalRam) {
     done = slaves_.serve_ram(r, streams_[0].clock, arrival);
@@ -443,15 +562,48 @@ Taken ReplayPath::deliver(MemRequest& r, bus::Slave slave, Picoseconds arrival) 
   return Taken::kYes;
 }
 
+/// The RAM takes the next burst, if it is at rest.
+void ReplayPath::begin_in_ram() {
+  if (!ram_.waiting()) return;
+  const std::uint64_t before = ram_.waited();
+  ram_.begin(streams_[0].clock);
+  note_ram_over();
+  if (ram_.waited() != before) wake(0);
+}
+
+/// The burst in the RAM is over, unless the program has looked at a word there meanwhile.
+void ReplayPath::end_in_ram() {
+  const Picoseconds now = ram_over_;
+  const Clock& core = streams_[0].clock;
+  if (ram_.known() && streams_[0].valid) {
+    const trace::Record& r = streams_[0].record;
+    if (r.look_clocks != 0 && event(r) == kNever) {
+      ram_.looks_until(core.edge_at_or_after(now) + 1);
+      ram_.follow();
+      note_ram_over();
+      if (ram_over_ > now) return;
+    }
+  }
+  MemRequest& r = ram_.finish(now);
+  ram_over_ = kNever;
+  static_cast<ReplayPipe::Burst&>(r).delivered = now;
+  end_served(r, now);
+  begin_in_ram();
+}
+
 void ReplayPath::finish_served() {
   const ReplaySlaves::Due first = slaves_.take();
   if (first.arrives) {
     if (first.request->address >= memory_.map().ddr_base) return memory_.submit(*first.request);
     return serve(*first.request, memory_.slave_of(*first.request), first.at);
   }
-  if (!memory_only_) return memory_.slave_done(*first.request, first.at, false);
-  first.request->first = first.request->last = first.at;
-  completed(*first.request);
+  end_served(*first.request, first.at);
+}
+
+void ReplayPath::end_served(MemRequest& r, Picoseconds at) {
+  if (!memory_only_) return memory_.slave_done(r, at, false);
+  r.first = r.last = at;
+  completed(r);
 }
 
 void ReplayPath::completed(MemRequest& r) {
@@ -475,6 +627,7 @@ void ReplayPath::find_next() {
 
 void ReplayPath::issue() {
   const unsigned stream = next_stream_;
+  if (stream == 0 && ram_.played()) return go_on_with_core();
   Stream& s = streams_[stream];
   const trace::Record& r = s.record;
   if (r.kind == trace::Kind::kTransfer) return submit_transfer(stream);
@@ -483,7 +636,15 @@ void ReplayPath::issue() {
     prepare(stream);
     return find_next();
   }
-  Slot& slot = *s.slot;
+  note_outcome(s, r.write ? s.came : kNever, kNever);
+  issue_request(stream, r, s.number, s.came, *s.slot);
+  fetch(stream);
+  find_next();
+}
+
+void ReplayPath::issue_request(unsigned stream, const trace::Record& r, std::uint64_t number, Picoseconds came,
+                               Slot& slot) {
+  Stream& s = streams_[stream];
   MasterState& m = masters_[index(r.master)];
   if (m.in_turn) {
     unsigned& turn = m.turn[r.write];
@@ -491,7 +652,7 @@ void ReplayPath::issue() {
       turn = r.write ? m.write_slots_from : 0;
   }
   slot.free = kNever;
-  slot.number = s.number;
+  slot.number = number;
   const bool aside = r.kind == trace::Kind::kAside;
   slot.address = aside ? r.address : memory_.map().ddr_base + r.address;
   slot.service = r.service;
@@ -500,8 +661,7 @@ void ReplayPath::issue() {
   slot.write = r.write;
   slot.locked = r.locked;
   slot.bytes = r.bytes;
-  slot.came = s.came;
-  note_outcome(s, r.write ? s.came : kNever, kNever);
+  slot.came = came;
   s.earliest = next_time_;
   if (stream == 0) core_last_ = next_time_;
   if (on_issue) [[unlikely]]
@@ -509,7 +669,7 @@ void ReplayPath::issue() {
   if (!aside) {
     ++requests_;
     bytes_ += r.bytes;
-    m.at_recorded_time += r.release == trace::Release::kAt && s.number > 0;
+    m.at_recorded_time += r.release == trace::Release::kAt && number > 0;
   }
   if (!aside || !memory_only_) m.count(r.write, r.bytes);
   if (m.priority != r.priority) {
@@ -520,23 +680,24 @@ void ReplayPath::issue() {
     serve(slot, bus::Slave::kConfig, slot.issued);
   else
     memory_.submit(slot);
-  fetch(stream);
-  find_next();
 }
 
 bool ReplayPath::run_before(Picoseconds until) {
   if (ended_early_ != kNever) return true;
   for (;;) {
     if (stop_ < until) until = stop_;
-    const Picoseconds event = memory_.next_event(), slave = slaves_.next();
+    const Picoseconds event = memory_.next_event(), slave = std::min(slaves_.next(), ram_over_);
     if (slave < std::min(next_time_, event)) [[unlikely]] {  // after all else of its instant
       if (slave >= until) break;
-      finish_served();
+      if (ram_over_ < slaves_.next())
+        end_in_ram();
+      else
+        finish_served();
     } else if (next_time_ <= event) {
       if (next_time_ >= until) break;
       issue();
     } else if (!memory_.advance(std::min({next_time_, until, slave == kNever ? kNever : slave + 1})) &&
-               until <= next_time_ && until <= slaves_.next()) {
+               until <= next_time_ && until <= std::min(slaves_.next(), ram_over_)) {
       break;
     }
   }
@@ -554,6 +715,7 @@ bool ReplayPath::run_before(Picoseconds until) {
 }
 
 void ReplayPath::leave_out_the_rest() {
+  for (; !ready_.empty(); ready_.pop_front()) left_out_ += ready_.front().record.on_bus();
   for (unsigned i = 0; i < streams_.size(); ++i)
     for (Stream& s = streams_[i]; s.valid; next_record(i)) {
       left_out_ += s.record.on_bus() || s.record.kind == trace::Kind::kTransfer;
@@ -593,7 +755,7 @@ void ReplayPath::complete(Slot& slot) {
     o.last = slot.last;
     if (o.delivered == kNever) o.delivered = slot.last;
   }
-  if (time_[m.stream] == kNever) wake(m.stream);
+  if (time_[m.stream] == kNever || (m.stream == 0 && ram_.played())) wake(m.stream);
   if (cross_) [[unlikely]]
     wake_those_behind(m.stream);
 }

@@ -1,6 +1,7 @@
 // The memory system played from a trace, without core, video and SystemC.
 #pragma once
 #include <array>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "model/mem/ddr_check.h"
 #include "model/memsys/memory_system.h"
 #include "model/trace/core/trace.h"
+#include "sw/fovea/replay/core_ram.h"
 #include "sw/fovea/replay/replay_params.h"
 #include "sw/fovea/replay/replay_pipe.h"
 #include "sw/fovea/replay/replay_slaves.h"
@@ -67,7 +69,8 @@ class ReplayPath final : private memsys::MemoryHost {
   const std::string& label(Master m) const { return masters_[index(m)].label; }
   Picoseconds start() const { return start_; }
   const mem::DdrStats& memory() const { return ddr().stats; }
-  /// Clocks of the core for which bursts have waited in internal RAM: as recorded, whatever the settings are.
+  /// Clocks of the core for which bursts have waited in internal RAM as recorded, whatever the settings are: by a trace
+  /// that lacks the core's accesses to it.
   std::uint64_t waited_in_ram() const { return slaves_.waited_in_ram(); }
   /// Called with each record as it goes out; empty in a plain replay.
   std::function<void(unsigned stream, Picoseconds at)> on_issue;
@@ -121,6 +124,13 @@ class ReplayPath final : private memsys::MemoryHost {
     unsigned controller = kTransferControllers;  // whose transfers it holds; kTransferControllers: none's
   };
 
+  /// A record of the core whose program has come to it, and which waits for its port.
+  struct Ready {
+    trace::Record record;
+    std::uint64_t number = 0;
+    Picoseconds came = 0;
+  };
+
   void set_up_memory(const ReplayParams& params);
   void set_up_streams();
   void set_up_masters();
@@ -146,9 +156,12 @@ class ReplayPath final : private memsys::MemoryHost {
   void serve(MemRequest& r, bus::Slave slave, Picoseconds arrival);
   void delivered(const Slot& slot, Picoseconds at);
   void finish_served();
-  Picoseconds next_event() const { return std::min(memory_.next_event(), slaves_.next()); }
+  void end_served(MemRequest& r, Picoseconds at);
+  Picoseconds next_event() const { return std::min({memory_.next_event(), slaves_.next(), ram_over_}); }
   void wake_those_behind(unsigned stream);
-  Picoseconds released(const Stream& s) const;
+  Picoseconds released(const Stream& s);
+  std::uint64_t wait_in_gap(const trace::Record& r, std::uint64_t edge);
+  void note_ram_over();
   static std::uint64_t aligned(const Stream& s, std::uint64_t edge);
   void wake(unsigned stream);
   Slot* place(MasterState& m, bool write);
@@ -159,6 +172,15 @@ class ReplayPath final : private memsys::MemoryHost {
   }
   void find_next();
   void issue();
+  void issue_request(unsigned stream, const trace::Record& r, std::uint64_t number, Picoseconds came, Slot& slot);
+  Picoseconds time_on_port(const Stream& s, const trace::Record& r, Picoseconds came, const Slot& slot) const;
+  void prepare_core();
+  Picoseconds program_time();
+  Picoseconds ready_time();
+  void go_on_with_core();
+  void begin_in_ram();
+  void end_in_ram();
+  void note_end_of_core();
   void check(const trace::Record& r, const Stream& s);
   void complete(Slot& slot);
 
@@ -182,6 +204,13 @@ class ReplayPath final : private memsys::MemoryHost {
   Clock scr_;                          // of the transfers
   Picoseconds next_request_ = 0;       // when the channel controller takes the next request
   ReplaySlaves slaves_;
+  CoreRam ram_;
+  Picoseconds ram_over_ = kNever;      // of the burst in internal RAM, as far as is known
+  std::deque<Ready> ready_;
+  Slot* ready_slot_ = nullptr;         // for the first of them
+  Picoseconds program_at_ = 0;         // when it came to the record before
+  Picoseconds program_time_ = kNever;  // when the program comes to the core's next record
+  bool ended_in_trace_ = false;        // to be noted when all before has gone out
   unsigned next_stream_ = 0;
   Picoseconds next_time_ = kNever;
   Picoseconds start_ = 0, last_ = 0;

@@ -17,8 +17,9 @@ std::vector<StatRow> ReplayPath::stats() {
   rows.push_back({"replay.left_out", left_out_, "1",
                   "requests and transfers of the trace that were not played: the recorded window was over, or the core "
                   "had done all that it did in it"});
-  rows.push_back({"replay.ram_waits", waited_in_ram(), "cycles",
-                  "core clocks for which bursts waited in internal RAM for the core, as in the recorded run"});
+  rows.push_back({"replay.ram_waits", waited_in_ram() + ram_.waited_of_bursts(), "cycles",
+                  "core clocks for which bursts waited in internal RAM for the core; by a trace without the core's "
+                  "accesses to it as in the recorded run"});
   if (seconds > 0) {
     rows.push_back({"replay.bandwidth", static_cast<double>(bytes_) / seconds, "B/s",
                     "bytes moved / replay.time"});
