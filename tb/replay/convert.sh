@@ -206,7 +206,7 @@ cmp "$out/b.txt" "$out/keep.txt" || fail 'a conversion that failed destroyed an 
 expect foreign_replay 2 "'fovea trace convert' reads" -- "$fovea" replay "$out/d.stl" -o "$out/replay"
 
 expect info 0 '^text$' '^video +48 +4 ' -- "$fovea" trace info "$out/a.txt"
-expect info_binary 0 '^binary, version 4$' 'requests wait for others' 'SDRAM 243 MHz' 'arm_d' -- \
+expect info_binary 0 '^binary, version 5$' 'requests wait for others' 'SDRAM 243 MHz' 'arm_d' -- \
   "$fovea" trace info "$source/traces/bus/paper-pal.trace"
 expect info_foreign 0 '^dramsys-stl' -- "$fovea" trace info "$out/d.stl"
 for help in 'trace --help' 'trace convert --help' 'trace info --help' 'replay --help'; do

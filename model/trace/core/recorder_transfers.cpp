@@ -382,7 +382,8 @@ std::uint64_t BusRecorder::take_accesses(Record& r, bool with_room_waits, std::u
 /// A request for which the core sees its buffers out first: it is released by their end. What the program did in
 /// internal RAM before it came to the request becomes a step of its own.
 void BusRecorder::place_work_before(const MemRequest& r) {
-  if (accesses_.empty() || !open_ || r.issued < start_) return;
+  const Stream& s = streams_[0];
+  if (accesses_.empty() || !open_ || r.issued < start_ || (s.written == 0 && s.pending.empty())) return;
   const CoreState now = core_(&r);
   if (now.drains == core_before_.drains && !register_access_) return;
   const std::uint64_t asked =
@@ -412,6 +413,7 @@ void BusRecorder::take_looks(Record& r, std::uint64_t began, std::uint64_t seen)
     last = place;
     accesses_.pop_front();
   }
+  if (looks_.clocks == 0) return;
   r.look_after = looks_.after;
   r.look_clocks = looks_.clocks;
   r.look_bank = looks_.bank;

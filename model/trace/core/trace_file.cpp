@@ -363,11 +363,11 @@ bool TraceFile::next(unsigned stream, Record& record) {
     if (record.kind == Kind::kTransfer && !s.transfers) throw BadTrace("a transfer in another's stream");
     if (record.gap > s.longest_gap || record.wake_gap > s.longest_gap)
       throw BadTrace("a gap of hours");
-    if (!record.ram.empty() && (stream != 0 || info_.edma.ram_banks == 0))
+    if ((!record.ram.empty() || record.look_clocks != 0) && (stream != 0 || info_.edma.ram_banks == 0))
       throw BadTrace("accesses to internal RAM of another stream than the core's");
     const auto no_bank = [&](const RamRun& r) { return r.bank >= info_.edma.ram_banks; };
-    if (std::any_of(record.ram.begin(), record.ram.end(), no_bank) ||
-        record.look_bank >= std::max(info_.edma.ram_banks, 1u))
+    const bool looks = record.look_clocks != 0;
+    if (std::any_of(record.ram.begin(), record.ram.end(), no_bank) || (looks && no_bank({0, 1, record.look_bank})))
       throw BadTrace("an unknown bank of internal RAM");
     if (record.back > s.read || record.room > s.read) throw BadTrace("a reference to before the first record");
     if (record.release == Release::kWhen) {
