@@ -187,7 +187,8 @@ class Package(Folder):
             (folder / "stalls.csv").write_bytes(text)
             with self.assertRaisesRegex(fovea.ResultsError, r"stalls.csv'.*"):
                 fovea.read(folder).stalls
-        for text in ("[" * 100000, "{", '{"complete": true, "x": NaN}', "[]", '{"complete": true, "a": {"value": true, "unit": "1"}}'):
+        for text in ("[" * 100000, "{", '{"complete": true, "x": NaN}', "[]",
+                     '{"complete": true, "x": 1e999}', '{"complete": true, "x": ' + "9" * 400 + "}", '{"complete": true, "a": {"value": true, "unit": "1"}}'):
             (folder / "stats.json").write_text(text)
             with self.assertRaisesRegex(fovea.ResultsError, r"stats.json'.*damaged"):
                 fovea.read(folder)

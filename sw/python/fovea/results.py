@@ -2,6 +2,7 @@
 import csv
 import difflib
 import json
+import math
 import pathlib
 import re
 
@@ -126,8 +127,15 @@ def _text(file):
 
 def _integer(text):
     # As the program reads them: counts have 64 bits and no sign.
-    value = int(text) if len(text) <= 20 else float(text)
-    return value if 0 <= value < 1 << 64 else float(text)
+    value = int(text) if len(text) <= 20 else _finite(text)
+    return value if 0 <= value < 1 << 64 else _finite(text)
+
+
+def _finite(text):
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(text)
+    return value
 
 
 def _no_constant(text):
@@ -136,7 +144,7 @@ def _no_constant(text):
 
 def _object(file):
     try:
-        value = json.loads(_text(file), parse_int=_integer, parse_constant=_no_constant)
+        value = json.loads(_text(file), parse_int=_integer, parse_float=_finite, parse_constant=_no_constant)
     except (ValueError, RecursionError):
         value = None
     if not isinstance(value, dict):
